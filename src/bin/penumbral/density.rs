@@ -1,0 +1,63 @@
+//! `density`: the density of all casters on the ground.
+
+use std::io::Cursor;
+use std::path::Path;
+use std::time::Instant;
+
+use image::{ImageBuffer, ImageFormat, Luma};
+use penumbral::plan::Method;
+use penumbral::{DensityMap, Scratch, Tolerance};
+use serde_json::json;
+
+use crate::{Failure, extension, output, read_scene};
+
+pub(crate) fn run(
+    path: &Path,
+    picture: &Path,
+    method: Option<Method>,
+    tolerance: Tolerance,
+    opaque: bool,
+    repeat: u32,
+) -> Result<(), Failure> {
+    extension(picture, &["png"])?;
+    let scene = read_scene(path)?;
+    let (mut map, mut scratch) = (DensityMap::default(), Scratch::new());
+    let key = scene.tone().key();
+    let mut canvas = Vec::new();
+    let mut times = Vec::new();
+    let bar = output::progress(repeat as usize + 1, "drawing");
+    // The first drawing warms up memory and is not counted.
+    for count in 0..=repeat {
+        let start = Instant::now();
+        scene
+            .ground_density(method, tolerance, opaque, &mut map, &mut scratch)
+            .map_err(|error| error.to_string())?;
+        canvas.resize(map.densities().len() * 4, 255);
+        map.blend_rgba8(key, &mut canvas)
+            .map_err(|error| error.to_string())?;
+        let time = start.elapsed().as_nanos();
+        if count > 0 {
+            times.push(time as u64);
+        }
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    times.sort_unstable();
+    let max = map.densities().iter().copied().fold(0.0_f32, f32::max);
+
+    let grey: ImageBuffer<Luma<u16>, Vec<u16>> =
+        ImageBuffer::from_raw(map.width(), map.height(), map.to_grey16())
+            .ok_or("the map does not fill its picture")?;
+    let mut png = Cursor::new(Vec::new());
+    grey.write_to(&mut png, ImageFormat::Png)
+        .map_err(|error| error.to_string())?;
+    output::write(picture, &png.into_inner())?;
+    let line = json!({
+        "method": method.map_or("auto".to_owned(), |method| method.to_string()),
+        "pixels": map.densities().len(),
+        "median_ns": times[times.len() / 2],
+        "max_density": max,
+    });
+    println!("{line}");
+    Ok(())
+}

@@ -1,0 +1,156 @@
+//! `penumbral`: pictures, densities, meshes and explanations of scene files.
+
+mod density;
+mod explain;
+mod mesh;
+mod output;
+mod render;
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use penumbral::plan::Method;
+use penumbral::{Scene, Tolerance};
+
+/// Shadows of material-style layered surfaces that state how wrong they may be, and keep to it.
+#[derive(Parser)]
+#[command(name = "penumbral", version, about, args_override_self = true)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Draw a scene as a picture.
+    Render {
+        /// The scene file, JSON.
+        scene: PathBuf,
+        /// The picture: .png or .svg.
+        #[arg(short)]
+        output: PathBuf,
+        /// The largest error of shadows in the SVG, in levels of 255.
+        #[arg(long, default_value = "1", value_parser = tolerance)]
+        tolerance: Tolerance,
+    },
+    /// Draw the density of all casters on the ground as 16-bit grey, white = 1, and time it.
+    Density {
+        /// The scene file, JSON.
+        scene: PathBuf,
+        /// The map: .png.
+        #[arg(short)]
+        output: PathBuf,
+        /// The method: auto, exact or mesh.
+        #[arg(long, default_value = "auto", value_parser = method)]
+        method: MethodChoice,
+        /// The largest error, in levels of 255.
+        #[arg(long, default_value = "1", value_parser = tolerance)]
+        tolerance: Tolerance,
+        /// Leave out what opaque casters cover.
+        #[arg(long)]
+        opaque: bool,
+        /// Draw so many times and print the median time.
+        #[arg(long, default_value = "1", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+        repeat: u32,
+    },
+    /// Write the shadow of each surface on the ground as triangles.
+    Mesh {
+        /// The scene file, JSON.
+        scene: PathBuf,
+        /// The meshes: .json, .obj or .svg.
+        #[arg(short)]
+        output: PathBuf,
+        /// The largest error, in levels of 255.
+        #[arg(long, default_value = "1", value_parser = tolerance)]
+        tolerance: Tolerance,
+    },
+    /// Tell of each surface's shadow on the ground how it is projected and drawn.
+    Explain {
+        /// The scene file, JSON.
+        scene: PathBuf,
+    },
+}
+
+/// A method, or none where the plan is to choose.
+#[derive(Clone, Copy)]
+struct MethodChoice(Option<Method>);
+
+fn method(text: &str) -> Result<MethodChoice, String> {
+    if text == "auto" {
+        return Ok(MethodChoice(None));
+    }
+    let method = text
+        .parse()
+        .map_err(|_| "give auto, exact or mesh".to_owned())?;
+    Ok(MethodChoice(Some(method)))
+}
+
+fn tolerance(text: &str) -> Result<Tolerance, String> {
+    let levels: f32 = text
+        .parse()
+        .map_err(|_| "give a number of levels".to_owned())?;
+    Tolerance::levels(levels).map_err(|error| error.to_string())
+}
+
+/// What went wrong, in one line.
+type Failure = String;
+
+fn main() -> ExitCode {
+    let result = match Arguments::parse().command {
+        Command::Render {
+            scene,
+            output,
+            tolerance,
+        } => render::run(&scene, &output, tolerance),
+        Command::Density {
+            scene,
+            output,
+            method,
+            tolerance,
+            opaque,
+            repeat,
+        } => density::run(&scene, &output, method.0, tolerance, opaque, repeat),
+        Command::Mesh {
+            scene,
+            output,
+            tolerance,
+        } => mesh::run(&scene, &output, tolerance),
+        Command::Explain { scene } => explain::run(&scene),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("penumbral: {failure}");
+            ExitCode::from(1)
+        }
+    }
+}
+
+fn read_scene(path: &Path) -> Result<Scene, Failure> {
+    let bytes = std::fs::read(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        format!(
+            "{}: not UTF-8 text from byte {at} on: give a JSON file",
+            path.display()
+        )
+    })?;
+    Scene::from_json(&text).map_err(|error| format!("{}: {error}", path.display()))
+}
+
+/// The extension of an output file, which says what is to be written.
+fn extension<'a>(path: &'a Path, known: &[&str]) -> Result<&'a str, Failure> {
+    let extension = path
+        .extension()
+        .and_then(|extension| extension.to_str())
+        .unwrap_or("");
+    if known.contains(&extension) {
+        return Ok(extension);
+    }
+    Err(format!(
+        "{}: give an output that ends in .{}",
+        path.display(),
+        known.join(" or .")
+    ))
+}

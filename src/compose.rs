@@ -1,0 +1,126 @@
+//! Composing layered surfaces: who casts on whom, and how much.
+//!
+//! From the ground up each surface is a receiver: onto it fall the shadows of every surface above it, each projected on
+//! the receiver's own elevation. Opaque casters of one elevation are united before they are cast. Casters of different
+//! elevations hide parts of the light as if these had nothing to do with each other: their transmissions multiply, which
+//! is exact wherever at most one of them is neither 0 nor 1.
+
+mod ground;
+#[cfg(feature = "raster")]
+mod raster;
+mod svg;
+
+pub use ground::DensityMap;
+#[cfg(feature = "raster")]
+pub use raster::Renderer;
+
+use glam::DVec2;
+
+use crate::error::Result;
+use crate::light::Projection;
+use crate::scene::{Scene, Surface};
+use crate::shadow::Shadow;
+use crate::shape::Shape;
+
+/// One shadow on one receiver, and the part of the light that its casters hold back where they hide it.
+pub(crate) struct Cast {
+    pub(crate) shadow: Shadow,
+    pub(crate) weight: f64,
+}
+
+/// What a receiver is: its elevation and the box it lies in (scene units).
+pub(crate) struct Receiver {
+    pub(crate) elevation: f32,
+    pub(crate) min: DVec2,
+    pub(crate) max: DVec2,
+}
+
+impl Receiver {
+    /// The ground, as far as the canvas shows it.
+    pub(crate) fn ground(scene: &Scene) -> Self {
+        Self {
+            elevation: 0.0,
+            min: DVec2::ZERO,
+            max: DVec2::from(scene.canvas().map(f64::from)),
+        }
+    }
+
+    /// A surface, as far as the canvas shows it, or none where that is nothing.
+    pub(crate) fn surface(scene: &Scene, surface: &Surface) -> Option<Self> {
+        let (min, max) = surface.shape().hull()?;
+        let ground = Self::ground(scene);
+        let (min, max) = (min.max(ground.min), max.min(ground.max));
+        (min.cmplt(max).all()).then_some(Self {
+            elevation: surface.elevation(),
+            min,
+            max,
+        })
+    }
+
+    fn meets(&self, shape: &Shape, projection: &Projection) -> bool {
+        let Some((min, max)) = shape.hull() else {
+            return false;
+        };
+        let min = min * projection.scale + projection.offset - projection.radius;
+        let max = max * projection.scale + projection.offset + projection.radius;
+        min.cmple(self.max).all() && max.cmpge(self.min).all()
+    }
+}
+
+/// The shadows of the light on a receiver.
+pub(crate) fn key_casts(scene: &Scene, receiver: &Receiver) -> Result<Vec<Cast>> {
+    casts(scene, receiver, |elevation| {
+        Ok((
+            scene.light().projection(elevation, receiver.elevation)?,
+            1.0,
+        ))
+    })
+}
+
+/// The ambient shadows on a receiver: the caster's own outline, blurred by half its height over the receiver, and the
+/// weaker the higher it is, as Android has them. Their weight holds the tone's strength.
+pub(crate) fn ambient_casts(scene: &Scene, receiver: &Receiver) -> Result<Vec<Cast>> {
+    let tone = scene.tone();
+    if tone.ambient() == 0.0 {
+        return Ok(Vec::new());
+    }
+    casts(scene, receiver, |elevation| {
+        let height = f64::from(elevation) - f64::from(receiver.elevation);
+        Ok((Projection::in_place(height / 2.0), tone.ambient_at(height)))
+    })
+}
+
+fn casts(
+    scene: &Scene,
+    receiver: &Receiver,
+    project: impl Fn(f32) -> Result<(Projection, f64)>,
+) -> Result<Vec<Cast>> {
+    let mut casts = Vec::new();
+    let above: Vec<&Surface> = scene
+        .paint_order()
+        .into_iter()
+        .map(|index| &scene.surfaces()[index])
+        .filter(|surface| surface.elevation() > receiver.elevation && surface.weight() > 0.0)
+        .collect();
+    for level in above.chunk_by(|a, b| a.elevation() == b.elevation()) {
+        let (projection, strength) = project(level[0].elevation())?;
+        let (opaque, translucent): (Vec<&Surface>, Vec<&Surface>) = level
+            .iter()
+            .filter(|surface| receiver.meets(surface.shape(), &projection))
+            .partition(|surface| surface.is_opaque());
+        if !opaque.is_empty() {
+            let shapes: Vec<&Shape> = opaque.iter().map(|surface| surface.shape()).collect();
+            casts.push(Cast {
+                shadow: Shadow::project(&shapes, &projection),
+                weight: strength,
+            });
+        }
+        for surface in translucent {
+            casts.push(Cast {
+                shadow: Shadow::project(&[surface.shape()], &projection),
+                weight: strength * f64::from(surface.weight()),
+            });
+        }
+    }
+    Ok(casts)
+}

@@ -1,0 +1,184 @@
+//! A scene as an SVG picture.
+//!
+//! Each surface is a group with its own coverage as mask: a fill, and the shadows on its elevation, which all surfaces of
+//! that elevation share. The shadows of the light are drawn as densities in one group whose opacity is the tone's strength,
+//! so that umbrae over umbrae get no darker than one.
+
+use glam::DVec2;
+
+use super::{Cast, Receiver, ambient_casts, key_casts};
+use crate::density::flatness;
+use crate::error::Result;
+use crate::light::Projection;
+use crate::mesh::{Tolerance, disc_distance};
+use crate::scene::{Scene, Surface};
+use crate::shadow::Shadow;
+use crate::svg::{Svg, number, path_data};
+use crate::tone::Color;
+
+/// Below this penumbra radius in pixels a shadow is drawn as nested antialiased outlines: a pixel is then an average over
+/// more than the penumbra, and triangles give each pixel the density at its centre.
+const FINE: f64 = 1.0;
+
+/// How many outlines: each is 1/8 of density, 6 levels at Android's strength.
+const NESTED: u32 = 8;
+
+impl Scene {
+    /// The scene as an SVG picture of the same size and the same look as the PNG: within `tolerance` of the exact shadows
+    /// and the rounding of what shows it. Coordinates have fixed decimals and everything has its place, so that the
+    /// text can be a snapshot.
+    ///
+    /// # Errors
+    /// None that the constructors let pass.
+    pub fn to_svg(&self, tolerance: Tolerance) -> Result<String> {
+        let grid = self.grid()?;
+        let size = [grid.width(), grid.height()].map(f64::from);
+        let extent = DVec2::from(size) / grid.pixels_per_unit();
+        let mut writer = Writer {
+            scene: self,
+            tolerance,
+            svg: Svg::new(grid.pixels_per_unit()),
+            levels: Vec::new(),
+        };
+        let whole = attributes(DVec2::ZERO, extent);
+        writer
+            .svg
+            .draw(&format!("<rect {whole} fill=\"{}\"/>", self.background()));
+        if let Some(level) = writer.level(&Receiver::ground(self))? {
+            writer.svg.draw(&format!("<use href=\"#s{level}\"/>"));
+        }
+        for (rank, index) in self.paint_order().into_iter().enumerate() {
+            let surface = &self.surfaces()[index];
+            if let Some(receiver) =
+                Receiver::surface(self, surface).filter(|_| surface.weight() > 0.0)
+            {
+                writer.draw_surface(surface, &receiver, rank)?;
+            }
+        }
+        Ok(writer.svg.finish(size, DVec2::ZERO, extent))
+    }
+}
+
+fn attributes(min: DVec2, size: DVec2) -> String {
+    let [x, y, width, height] = [min.x, min.y, size.x, size.y].map(|v| number(v, 3));
+    format!("x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\"")
+}
+
+struct Writer<'a> {
+    scene: &'a Scene,
+    tolerance: Tolerance,
+    svg: Svg,
+    /// The elevations whose shadows are defined, and whether there are any.
+    levels: Vec<(f32, bool)>,
+}
+
+impl Writer<'_> {
+    fn draw_surface(&mut self, surface: &Surface, receiver: &Receiver, rank: usize) -> Result<()> {
+        // A tenth of a level of coverage.
+        let flat = flatness(0.1, 0.0, 1.0 / f64::from(self.scene.scale()));
+        let cover = Shadow::project(&[surface.shape()], &Projection::in_place(0.0));
+        let data = path_data(&cover.outline(flat).polygons(flat));
+        let Color { r, g, b, .. } = surface.fill();
+        let fill = Color::rgb(r, g, b);
+        let weight = number(f64::from(surface.weight()), 4);
+        let is_shaded = !key_casts(self.scene, receiver)?.is_empty()
+            || !ambient_casts(self.scene, receiver)?.is_empty();
+        let level = if is_shaded {
+            self.level(receiver)?
+        } else {
+            None
+        };
+        let Some(level) = level else {
+            self.svg.draw(&format!(
+                "<path fill=\"{fill}\" fill-opacity=\"{weight}\" d=\"{data}\"/>"
+            ));
+            return Ok(());
+        };
+        let around = attributes(receiver.min - 1.0, receiver.max - receiver.min + 2.0);
+        self.svg.define(&format!(
+            "<mask id=\"m{rank}\" maskUnits=\"userSpaceOnUse\" {around}>\
+             <path fill=\"#fff\" fill-opacity=\"{weight}\" d=\"{data}\"/></mask>",
+        ));
+        self.svg.draw(&format!(
+            "<g mask=\"url(#m{rank})\"><rect {around} fill=\"{fill}\"/><use href=\"#s{level}\"/></g>"
+        ));
+        Ok(())
+    }
+
+    /// The number of the group of all shadows on a receiver's elevation, defined when it is first asked for, or none
+    /// where no shadow falls on the canvas. Receivers of one elevation share it.
+    fn level(&mut self, receiver: &Receiver) -> Result<Option<usize>> {
+        let known = self
+            .levels
+            .iter()
+            .position(|(elevation, _)| *elevation == receiver.elevation);
+        if let Some(level) = known {
+            return Ok(Some(level).filter(|&level| self.levels[level].1));
+        }
+        let receiver = Receiver {
+            elevation: receiver.elevation,
+            ..Receiver::ground(self.scene)
+        };
+        let strength = f64::from(self.scene.tone().key());
+        let key = if strength > 0.0 {
+            key_casts(self.scene, &receiver)?
+        } else {
+            Vec::new()
+        };
+        let ambient = ambient_casts(self.scene, &receiver)?;
+        let level = self.levels.len();
+        let any = !key.is_empty() || !ambient.is_empty();
+        self.levels.push((receiver.elevation, any));
+        if !any {
+            return Ok(None);
+        }
+        let mut group = self.svg.part();
+        group.draw(&format!("<g id=\"s{level}\">"));
+        self.draw_casts(&key, strength, &mut group);
+        self.draw_casts(&ambient, 1.0, &mut group);
+        group.draw("</g>");
+        self.svg.define_part(group);
+        Ok(Some(level))
+    }
+
+    fn draw_casts(&self, casts: &[Cast], strength: f64, svg: &mut Svg) {
+        if casts.is_empty() {
+            return;
+        }
+        svg.draw(&format!("<g opacity=\"{}\">", number(strength, 4)));
+        for cast in casts {
+            // What a faint shadow may be wrong by, the picture is wrong by less.
+            let tolerance = self.tolerance.divided(strength * cast.weight);
+            if cast.shadow.radius() * f64::from(self.scene.scale()) < FINE {
+                self.draw_nested(cast, svg);
+            } else {
+                svg.draw("<g shape-rendering=\"crispEdges\">");
+                svg.draw_mesh(&cast.shadow.mesh(tolerance), cast.weight);
+                svg.draw("</g>");
+            }
+        }
+        svg.draw("</g>");
+    }
+
+    /// Outlines at equal steps of density, each as opaque as lifts those below it by one step.
+    fn draw_nested(&self, cast: &Cast, svg: &mut Svg) {
+        let flat = flatness(
+            0.1,
+            cast.shadow.radius(),
+            1.0 / f64::from(self.scene.scale()),
+        );
+        svg.draw(&format!("<g opacity=\"{}\">", number(cast.weight, 4)));
+        if cast.shadow.radius() == 0.0 {
+            let data = path_data(&cast.shadow.outline(flat).polygons(flat));
+            svg.draw(&format!("<path d=\"{data}\"/>"));
+        } else {
+            for step in 0..NESTED {
+                let density = (f64::from(step) + 0.5) / f64::from(NESTED);
+                let data = path_data(&cast.shadow.ring(disc_distance(density), flat));
+                let lift = number(1.0 / f64::from(NESTED - step), 4);
+                svg.draw(&format!("<path fill-opacity=\"{lift}\" d=\"{data}\"/>"));
+            }
+        }
+        svg.draw("</g>");
+    }
+}

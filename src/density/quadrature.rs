@@ -1,0 +1,81 @@
+//! The points at which averages over a square and over a disc are taken.
+
+use core::f64::consts::TAU;
+
+use glam::DVec2;
+use libm::{cos, sin, sqrt};
+
+/// Nodes and weights of the Gauss-Legendre rules with 4, 8 and 12 points on -1 to 1, the positive half (Abramowitz &
+/// Stegun 1964, table 25.4).
+const GAUSS_4: [(f64, f64); 2] = [
+    (0.339_981_043_584_856_3, 0.652_145_154_862_546_1),
+    (0.861_136_311_594_052_6, 0.347_854_845_137_453_86),
+];
+const GAUSS_8: [(f64, f64); 4] = [
+    (0.183_434_642_495_649_8, 0.362_683_783_378_362),
+    (0.525_532_409_916_329, 0.313_706_645_877_887_3),
+    (0.796_666_477_413_626_7, 0.222_381_034_453_374_48),
+    (0.960_289_856_497_536_2, 0.101_228_536_290_376_26),
+];
+const GAUSS_12: [(f64, f64); 6] = [
+    (0.125_233_408_511_468_9, 0.249_147_045_813_402_77),
+    (0.367_831_498_998_180_2, 0.233_492_536_538_354_8),
+    (0.587_317_954_286_617_5, 0.203_167_426_723_065_92),
+    (0.769_902_674_194_304_7, 0.160_078_328_543_346_23),
+    (0.904_117_256_370_474_9, 0.106_939_325_995_318_43),
+    (0.981_560_634_246_719_2, 0.047_175_336_386_511_83),
+];
+
+/// The nodes and weights on the interval from -1/2 to 1/2; the weights sum to 1.
+fn gauss(half: &'static [(f64, f64)]) -> impl Iterator<Item = (f64, f64)> + Clone {
+    half.iter()
+        .flat_map(|(node, weight)| [(-node / 2.0, weight / 2.0), (node / 2.0, weight / 2.0)])
+}
+
+/// Points and weights for an average over the square of side 1 about the origin: 4 x 4, 8 x 8 or 12 x 12, the more the
+/// smaller the penumbra radius in pixels. On edges, corners, slivers and dots they are within 0.04, 0.11 and 0.12 level
+/// of finer rules.
+pub(crate) fn square(radius: f64) -> impl Iterator<Item = (DVec2, f64)> {
+    let half: &'static [(f64, f64)] = if radius >= 2.0 {
+        &GAUSS_4
+    } else if radius >= 1.0 {
+        &GAUSS_8
+    } else {
+        &GAUSS_12
+    };
+    gauss(half).flat_map(move |(y, wy)| gauss(half).map(move |(x, wx)| (DVec2::new(x, y), wx * wy)))
+}
+
+/// 8 x 24 points and weights for an average over the disc of radius 1 about the origin: Gauss points in the square of the
+/// distance, so that equal steps have equal areas, by equal angles.
+pub(crate) fn disc() -> impl Iterator<Item = (DVec2, f64)> {
+    const TURN: u32 = 24;
+    gauss(&GAUSS_8).flat_map(|(node, weight)| {
+        let distance = sqrt(node + 0.5);
+        (0..TURN).map(move |step| {
+            let angle = TAU * (f64::from(step) + 0.5) / f64::from(TURN);
+            (
+                DVec2::new(cos(angle), sin(angle)) * distance,
+                weight / f64::from(TURN),
+            )
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn polynomials_are_averaged_exactly() {
+        for radius in [0.5, 1.0, 2.0] {
+            let average = |f: fn(DVec2) -> f64| square(radius).map(|(p, w)| w * f(p)).sum::<f64>();
+            assert!((average(|_| 1.0) - 1.0).abs() < 1e-14);
+            assert!((average(|p| p.x.powi(4) * p.y.powi(2)) - 1.0 / 80.0 / 12.0).abs() < 1e-14);
+        }
+        let average = |f: fn(DVec2) -> f64| disc().map(|(p, w)| w * f(p)).sum::<f64>();
+        assert!((average(|_| 1.0) - 1.0).abs() < 1e-14);
+        assert!((average(|p| p.x * p.x) - 0.25).abs() < 1e-14);
+        assert!(average(|p| p.x * p.y).abs() < 1e-14);
+    }
+}

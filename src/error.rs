@@ -1,0 +1,193 @@
+//! What was wrong with an input, where, and what to do about it.
+
+/// Coordinates, sizes, radii and elevations may not pass this magnitude, in scene units: 2^24, where an
+/// `f32` stops telling one unit from the next.
+pub const MAX_COORDINATE: f64 = 16_777_216.0;
+
+/// A picture may not have more pixels than this (8192 x 4096, a little over 8K UHD): composing takes 20 bytes a pixel.
+pub const MAX_PIXELS: u64 = 1 << 25;
+
+/// A path may not have more segments, and a polygon not more points, than this.
+pub const MAX_SEGMENTS: usize = 1 << 20;
+
+/// The result of whatever can refuse its input.
+pub type Result<T, E = Error> = core::result::Result<T, E>;
+
+/// Why an input was refused. Each names the field and the value.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A number is NaN or infinite.
+    #[error("{field} is {value}: give a finite number")]
+    NotFinite {
+        /// The field that holds it.
+        field: &'static str,
+        /// The value.
+        value: f64,
+    },
+    /// A number lies outside its range.
+    #[error("{field} is {value}: give a number from {min} to {max}")]
+    OutOfRange {
+        /// The field that holds it.
+        field: &'static str,
+        /// The value.
+        value: f64,
+        /// The least value that is taken.
+        min: f64,
+        /// The largest value that is taken.
+        max: f64,
+    },
+    /// A width, height, radius or extent that must be positive is zero or negative.
+    #[error("{field} is {value}: give a number above 0")]
+    NotPositive {
+        /// The field that holds it.
+        field: &'static str,
+        /// The value.
+        value: f64,
+    },
+    /// The caster is at or above the light: no plane below would be in its shadow.
+    #[error(
+        "elevation {elevation} is not below the light at z = {light_z}: lower the caster or raise the light"
+    )]
+    CasterNotBelowLight {
+        /// The caster's elevation, scene units.
+        elevation: f64,
+        /// The light's z, scene units.
+        light_z: f64,
+    },
+    /// The caster is below its receiver.
+    #[error(
+        "elevation {elevation} is below the receiver at {receiver}: a caster must be at or above what it shades"
+    )]
+    CasterBelowReceiver {
+        /// The caster's elevation, scene units.
+        elevation: f64,
+        /// The receiver's elevation, scene units.
+        receiver: f64,
+    },
+    /// The caster is so near the light that its shadow passes [`MAX_COORDINATE`].
+    #[error(
+        "the shadow of a caster at elevation {elevation} reaches {extent:e} units, over {MAX_COORDINATE}: move it away from the light"
+    )]
+    ShadowTooLarge {
+        /// The caster's elevation, scene units.
+        elevation: f64,
+        /// How far the shadow would reach, scene units.
+        extent: f64,
+    },
+    /// A path or polygon without a single line or curve.
+    #[error("{field} has no segments: give at least one closed contour")]
+    EmptyPath {
+        /// The field that holds it.
+        field: &'static str,
+    },
+    /// A path, polygon or list longer than its limit.
+    #[error("{field} has {count} parts, over the limit of {limit}: simplify it or split it")]
+    TooMany {
+        /// The field that holds it.
+        field: &'static str,
+        /// How many there are.
+        count: usize,
+        /// How many may be.
+        limit: usize,
+    },
+    /// SVG path data that cannot be read.
+    #[error("SVG path data, character {position}: {reason}")]
+    PathData {
+        /// Where reading stopped, in characters, from 1.
+        position: usize,
+        /// What is wrong there.
+        reason: String,
+    },
+    /// A picture that is empty or has more than [`MAX_PIXELS`] pixels.
+    #[error("a picture of {width} x {height} pixels: give 1 to {MAX_PIXELS} pixels in all")]
+    PictureSize {
+        /// Columns.
+        width: u64,
+        /// Rows.
+        height: u64,
+    },
+    /// A pixel buffer that is too short for its grid, or of another size than the picture.
+    #[error(
+        "the buffer holds {length} bytes or pixels, the grid needs {needed}: allocate stride x height"
+    )]
+    BufferSize {
+        /// What it holds.
+        length: usize,
+        /// What it should hold.
+        needed: usize,
+    },
+    /// A scene file that cannot be understood.
+    #[error("line {line}, column {column}, {field}: {reason}")]
+    Scene {
+        /// The line, from 1.
+        line: usize,
+        /// The column, from 1.
+        column: usize,
+        /// The field, as in `surfaces[3].radius`.
+        field: String,
+        /// What is wrong and what to do.
+        reason: String,
+    },
+}
+
+/// The value as `f64`, when it is finite and within `±MAX_COORDINATE`.
+pub(crate) fn coordinate(field: &'static str, value: f64) -> Result<f64> {
+    within(field, value, -MAX_COORDINATE, MAX_COORDINATE)
+}
+
+/// The value, when it is finite, at least 0 and at most `MAX_COORDINATE`.
+pub(crate) fn length(field: &'static str, value: f64) -> Result<f64> {
+    within(field, value, 0.0, MAX_COORDINATE)
+}
+
+/// The value, when it is finite, above 0 and at most `MAX_COORDINATE`.
+pub(crate) fn positive(field: &'static str, value: f64) -> Result<f64> {
+    let value = finite(field, value)?;
+    if value <= 0.0 {
+        return Err(Error::NotPositive { field, value });
+    }
+    length(field, value)
+}
+
+/// The value, when it is finite and from `min` to `max`.
+pub(crate) fn within(field: &'static str, value: f64, min: f64, max: f64) -> Result<f64> {
+    let value = finite(field, value)?;
+    if !(min..=max).contains(&value) {
+        return Err(Error::OutOfRange {
+            field,
+            value,
+            min,
+            max,
+        });
+    }
+    Ok(value)
+}
+
+fn finite(field: &'static str, value: f64) -> Result<f64> {
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(Error::NotFinite { field, value })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_name_field_value_and_remedy() {
+        let text = positive("radius", -2.0).unwrap_err().to_string();
+        assert_eq!(text, "radius is -2: give a number above 0");
+        let text = coordinate("x", 1e9).unwrap_err().to_string();
+        assert_eq!(
+            text,
+            "x is 1000000000: give a number from -16777216 to 16777216"
+        );
+        assert_eq!(
+            length("z", f64::NAN).unwrap_err().to_string(),
+            "z is NaN: give a finite number"
+        );
+    }
+}

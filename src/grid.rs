@@ -1,0 +1,140 @@
+//! The pixels of a picture, in scene units.
+
+use glam::DVec2;
+
+use crate::error::{self, Error, MAX_PIXELS, Result};
+
+/// A grid of square pixels. Pixel (i, j) covers the square from `origin + (i, j) / pixels_per_unit` on; row j begins
+/// at `j * stride` in a buffer.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Grid {
+    /// The first corner, in pixels from the scene's origin.
+    corner: DVec2,
+    width: u32,
+    height: u32,
+    pixels_per_unit: f64,
+    stride: usize,
+}
+
+impl Grid {
+    /// A grid of `size` (columns, rows) pixels whose first corner is at `origin` (x, y; scene units), with
+    /// `pixels_per_unit` pixels a scene unit and rows one after the other.
+    ///
+    /// # Errors
+    /// No pixels or more than [`MAX_PIXELS`], an origin that is not finite or passes
+    /// [`MAX_COORDINATE`](crate::MAX_COORDINATE), pixels per unit not from 1/1024 to 1024.
+    pub fn new(origin: [f32; 2], size: [u32; 2], pixels_per_unit: f32) -> Result<Self> {
+        let [width, height] = size;
+        let count = u64::from(width) * u64::from(height);
+        if count == 0 || count > MAX_PIXELS {
+            return Err(Error::PictureSize {
+                width: u64::from(width),
+                height: u64::from(height),
+            });
+        }
+        let origin = DVec2::new(
+            error::coordinate("grid.origin.x", f64::from(origin[0]))?,
+            error::coordinate("grid.origin.y", f64::from(origin[1]))?,
+        );
+        let pixels_per_unit = error::within(
+            "grid.pixels_per_unit",
+            f64::from(pixels_per_unit),
+            1.0 / 1024.0,
+            1024.0,
+        )?;
+        Ok(Self {
+            corner: origin * pixels_per_unit,
+            width,
+            height,
+            pixels_per_unit,
+            stride: width as usize,
+        })
+    }
+
+    /// The same grid in a buffer whose rows begin `stride` pixels apart.
+    ///
+    /// # Errors
+    /// A stride below the width or above 2^31.
+    pub fn with_stride(mut self, stride: usize) -> Result<Self> {
+        error::within(
+            "grid.stride",
+            stride as f64,
+            f64::from(self.width),
+            2_147_483_648.0,
+        )?;
+        self.stride = stride;
+        Ok(self)
+    }
+
+    /// Columns.
+    #[must_use]
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Rows.
+    #[must_use]
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// Pixels a scene unit.
+    #[must_use]
+    pub fn pixels_per_unit(&self) -> f64 {
+        self.pixels_per_unit
+    }
+
+    /// From one row's first pixel to the next row's, in pixels.
+    #[must_use]
+    pub fn stride(&self) -> usize {
+        self.stride
+    }
+
+    /// The first corner, in pixels from the scene's origin.
+    pub(crate) fn corner(&self) -> DVec2 {
+        self.corner
+    }
+
+    /// The part of the grid from column and row `first` to before `end`, in a buffer of its own.
+    pub(crate) fn window(&self, first: [u32; 2], end: [u32; 2]) -> Self {
+        let width = end[0] - first[0];
+        Self {
+            corner: self.corner + DVec2::new(f64::from(first[0]), f64::from(first[1])),
+            width,
+            height: end[1] - first[1],
+            stride: width as usize,
+            ..*self
+        }
+    }
+
+    /// Refuses a buffer that ends before the grid does.
+    pub(crate) fn check_buffer(&self, length: usize) -> Result<()> {
+        let needed = self.stride * (self.height as usize - 1) + self.width as usize;
+        if length < needed {
+            return Err(Error::BufferSize { length, needed });
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_bounded_before_memory_is_taken() {
+        assert!(matches!(
+            Grid::new([0.0, 0.0], [1_000_000, 1_000_000], 1.0),
+            Err(Error::PictureSize { .. })
+        ));
+        assert!(Grid::new([0.0, 0.0], [0, 5], 1.0).is_err());
+        let grid = Grid::new([0.0, 0.0], [4, 3], 2.0).unwrap();
+        assert!(grid.with_stride(3).is_err());
+        let grid = grid.with_stride(10).unwrap();
+        assert!(grid.check_buffer(24).is_ok());
+        assert!(matches!(
+            grid.check_buffer(23),
+            Err(Error::BufferSize { needed: 24, .. })
+        ));
+    }
+}

@@ -1,0 +1,111 @@
+//! penumbral: shadows for UI toolkits that state how wrong they may be, and keep to it.
+//!
+//! An application describes flat surfaces at elevations (cards, dialogs, buttons, any path) and one circular light. It
+//! gets their shadows back as triangles for a GPU, as densities on a grid of pixels, or as a composited picture.
+//!
+//! # The model
+//!
+//! A uniform disc of radius R at height H lights everything. A caster at height h is seen on a receiver at height g as its
+//! **outline**, larger by (H - g) / (H - h) about the light's centre, and the light is seen through each of its points
+//! as a disc of the **penumbra radius** r = R (h - g) / (H - h). The **density** of the shadow at a point is the fraction
+//! of the disc about it that the outline covers:
+//!
+//! ```text
+//! density(p) = area(outline ∩ disc(p, r)) / (π r²)
+//! ```
+//!
+//! It is 1 in the **umbra**, between 0 and 1 in the penumbra, and exact for a disc parallel to the surfaces (Soler &
+//! Sillion 1998). The area is closed form for lines and circular arcs, so there is no case for shadows without umbra,
+//! concave shapes or holes. Errors are in **levels**, 1/255 of density; lengths are in scene units, of which a grid has
+//! so many pixels each.
+//!
+//! # Quick start
+//!
+//! ```
+//! use penumbral::{Grid, Light, Scratch, Shape, Tolerance};
+//!
+//! let light = Light::android(360.0)?;
+//! let card = Shape::rounded_rect(24.0, 40.0, 312.0, 160.0, 12.0)?;
+//! let shadow = light.cast(&card, 8.0, 0.0)?;
+//!
+//! // Pixels: coverage into a buffer of yours, colour is yours to apply.
+//! let grid = Grid::new([0.0, 0.0], [360, 240], 1.0)?;
+//! let mut mask = vec![0; 360 * 240];
+//! shadow.fill_a8(&grid, &mut mask, &mut Scratch::new())?;
+//!
+//! // Triangles: position and density at each vertex, to be interpolated linearly.
+//! let mesh = shadow.mesh(Tolerance::levels(4.0)?);
+//! assert!(mesh.error_levels() <= 4.0);
+//!
+//! // A point.
+//! assert!(shadow.density_at([180.0, 120.0]) > 0.999);
+//! # Ok::<(), penumbral::Error>(())
+//! ```
+//!
+//! # The house
+//!
+//! Data flows one way. [`Shadow`] is the door between geometry and numbers: everything before it is about planes and
+//! shapes, everything after it about an outline and a radius.
+//!
+//! | file | what it holds |
+//! |---|---|
+//! | `light.rs` | [`Light`]: the projection of one plane on another |
+//! | `shape.rs`, `path.rs`, `svg_path.rs`, `convert.rs` | [`Shape`], [`Path`]: what casters look like, and where they come from |
+//! | `outline.rs`, `outline/` | loops of lines and arcs that never cross; fill rules; cutting to a box |
+//! | `shadow.rs` | [`Shadow`]: bounds, density at a point, coverage |
+//! | `density.rs`, `density/` | densities: the closed form, on points and on pixels |
+//! | `mesh.rs`, `mesh/` | [`ShadowMesh`]: tangents, triangulation, refinement, Gouraud rasterisation |
+//! | `plan.rs` | [`plan::choose`]: the cheapest method within a tolerance |
+//! | `scene.rs`, `scene/json.rs` | [`Scene`], [`Surface`], and their JSON format |
+//! | `tone.rs` | [`Tone`], [`Color`]: how density becomes paint |
+//! | `compose.rs`, `compose/` | who casts on whom; pictures and SVG |
+//! | `grid.rs`, `scratch.rs`, `error.rs` | [`Grid`], [`Scratch`], [`Error`] |
+//!
+//! # Features
+//!
+//! | feature | what it adds | dependencies |
+//! |---|---|---|
+//! | `raster` (default) | [`Renderer`]: pictures on tiny-skia pixmaps; paths from tiny-skia | tiny-skia |
+//! | `svg-path` | [`Path::from_svg`] | svgtypes |
+//! | `scene` | [`Scene::from_json`] | serde, serde_json, `svg-path` |
+//! | `cli` | the command line `penumbral` | clap, image, indicatif, `raster`, `scene` |
+//! | `lyon`, `kurbo` | paths from these crates | kurbo |
+//!
+//! # Stability guarantees
+//!
+//! The same input gives the same bits on every machine. A patch release may change densities by no more than the stated
+//! error of their method, and meshes in any way that keeps their tolerance: compare pictures, not vertices.
+
+mod compose;
+#[cfg(any(feature = "lyon", feature = "kurbo", feature = "raster"))]
+mod convert;
+mod density;
+mod error;
+mod grid;
+mod light;
+mod mesh;
+mod outline;
+mod path;
+pub mod plan;
+mod scene;
+mod scratch;
+mod shadow;
+mod shape;
+mod svg;
+#[cfg(feature = "svg-path")]
+mod svg_path;
+mod tone;
+
+pub use compose::DensityMap;
+#[cfg(feature = "raster")]
+pub use compose::Renderer;
+pub use error::{Error, MAX_COORDINATE, MAX_PIXELS, MAX_SEGMENTS, Result};
+pub use grid::Grid;
+pub use light::Light;
+pub use mesh::{MeshOptions, MeshVertex, Profile, ShadowMesh, Tolerance, meshes_to_svg};
+pub use path::{FillRule, Path};
+pub use scene::{Scene, Surface};
+pub use scratch::Scratch;
+pub use shadow::{Bounds, Shadow};
+pub use shape::{CornerRadii, Shape};
+pub use tone::{Color, ParseColorError, Tone};

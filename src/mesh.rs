@@ -1,0 +1,275 @@
+//! Triangles over which linear interpolation of density stays within a tolerance.
+//!
+//! The tangent construction gives the skeleton: rings from the penumbra's outer edge to the umbra, at the distances that
+//! suit the profile best. Between them a constrained Delaunay triangulation (spade), inside the umbra a plain one (lyon);
+//! where the result is still wrong, as at corners and where there is no umbra, vertices are added until it is not.
+//!
+//! The tangent construction follows US 9,639,976; pixels ([`Shadow::fill_a8`]) and point queries do not use it.
+
+mod export;
+mod gouraud;
+mod profile;
+mod refine;
+mod tangents;
+mod umbra;
+
+use glam::DVec2;
+
+pub use export::meshes_to_svg;
+pub use profile::Profile;
+pub(crate) use profile::disc_distance;
+use profile::{Knot, Pieces};
+use refine::Refinement;
+use tangents::{ProjectionCircle, tangent_loops};
+
+use crate::density::{Field, flatness};
+use crate::error::{self, Result};
+use crate::outline::Outline;
+use crate::shadow::{Bounds, Shadow};
+
+/// The largest error that is allowed, in levels (1/255 of density). Half of it takes about 1.4 times the triangles along
+/// straight edges and twice as many at corners.
+#[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
+pub struct Tolerance(f64);
+
+impl Tolerance {
+    /// One level: what 8-bit rounding does twice over.
+    pub const ONE_LEVEL: Self = Self(1.0);
+
+    /// A tolerance of 1/16 to 64 levels.
+    ///
+    /// # Errors
+    /// A number outside that range.
+    pub fn levels(levels: f32) -> Result<Self> {
+        Ok(Self(error::within(
+            "tolerance",
+            f64::from(levels),
+            1.0 / 16.0,
+            MOST_LEVELS,
+        )?))
+    }
+
+    /// The tolerance over a strength from 0 to 1, as far as tolerances go.
+    pub(crate) fn divided(self, strength: f64) -> Self {
+        Self((self.0 / strength).min(MOST_LEVELS))
+    }
+
+    /// The tolerance in levels.
+    #[must_use]
+    pub fn as_levels(self) -> f64 {
+        self.0
+    }
+}
+
+/// The largest tolerance, in levels: a quarter of the whole.
+const MOST_LEVELS: f64 = 64.0;
+
+impl Default for Tolerance {
+    fn default() -> Self {
+        Self::ONE_LEVEL
+    }
+}
+
+/// How a mesh is made.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeshOptions {
+    tolerance: Tolerance,
+    profile: Profile,
+    max_vertices: usize,
+}
+
+impl MeshOptions {
+    /// Within `tolerance` of the exact density, with at most 65,536 vertices.
+    #[must_use]
+    pub fn new(tolerance: Tolerance) -> Self {
+        Self {
+            tolerance,
+            profile: Profile::Disc,
+            max_vertices: 1 << 16,
+        }
+    }
+
+    /// With another profile: the tolerance then holds against that profile's densities.
+    #[must_use]
+    pub fn with_profile(mut self, profile: Profile) -> Self {
+        self.profile = profile;
+        self
+    }
+
+    /// With another limit on vertices. A mesh that reaches it is not [complete](ShadowMesh::is_complete).
+    #[must_use]
+    pub fn with_max_vertices(mut self, max_vertices: usize) -> Self {
+        self.max_vertices = max_vertices;
+        self
+    }
+}
+
+impl From<Tolerance> for MeshOptions {
+    fn from(tolerance: Tolerance) -> Self {
+        Self::new(tolerance)
+    }
+}
+
+/// A vertex: 12 bytes, as a GPU takes it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(C)]
+pub struct MeshVertex {
+    /// x and y in scene units.
+    pub position: [f32; 2],
+    /// The density there, 0 to 1.
+    pub density: f32,
+}
+
+/// Triangles with a density at each vertex, to be interpolated linearly.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ShadowMesh {
+    vertices: Vec<MeshVertex>,
+    indices: Vec<u32>,
+    error_levels: f64,
+    complete: bool,
+}
+
+impl ShadowMesh {
+    /// The vertices. Those on the penumbra's outer edge have density 0.
+    #[must_use]
+    pub fn vertices(&self) -> &[MeshVertex] {
+        &self.vertices
+    }
+
+    /// Three indices a triangle, all turning the same way: clockwise where y points down, as on screens,
+    /// counter-clockwise where it points up.
+    #[must_use]
+    pub fn indices(&self) -> &[u32] {
+        &self.indices
+    }
+
+    /// The triangles, as their three vertices.
+    pub fn triangles(&self) -> impl Iterator<Item = [MeshVertex; 3]> {
+        self.indices
+            .chunks_exact(3)
+            .map(|corners| [0, 1, 2].map(|i: usize| self.vertices[corners[i] as usize]))
+    }
+
+    /// The largest difference from the exact density found by sampling each triangle, in levels. For profiles other than
+    /// the disc's it holds their own difference too.
+    #[must_use]
+    pub fn error_levels(&self) -> f64 {
+        self.error_levels
+    }
+
+    /// Whether the tolerance was reached before the limit on vertices.
+    #[must_use]
+    pub fn is_complete(&self) -> bool {
+        self.complete
+    }
+
+    fn empty() -> Self {
+        Self {
+            vertices: Vec::new(),
+            indices: Vec::new(),
+            error_levels: 0.0,
+            complete: true,
+        }
+    }
+}
+
+impl Shadow {
+    /// Triangles with a density at each vertex, within the tolerance of the exact density wherever they are interpolated
+    /// and outside of them. With penumbra radius 0 they fill the outline.
+    ///
+    /// ```
+    /// use penumbral::{Light, Shape, Tolerance};
+    ///
+    /// let card = Shape::rounded_rect(16.0, 100.0, 300.0, 200.0, 12.0)?;
+    /// let shadow = Light::android(400.0)?.cast(&card, 8.0, 0.0)?;
+    /// let mesh = shadow.mesh(Tolerance::levels(4.0)?);
+    /// assert!(mesh.error_levels() <= 4.0);
+    /// # Ok::<(), penumbral::Error>(())
+    /// ```
+    #[must_use]
+    pub fn mesh(&self, options: impl Into<MeshOptions>) -> ShadowMesh {
+        let options = options.into();
+        let levels = options.tolerance.as_levels();
+        let radius = self.radius();
+        let outline = self.outline(flatness(FLATTENING_SHARE * levels, radius, 0.0));
+        let Some((min, max)) = outline.bounds() else {
+            return ShadowMesh::empty();
+        };
+        // Far from the origin the triangulations would lose digits.
+        let center = min.midpoint(max);
+        let outline = outline.moved(-center);
+        if radius == 0.0 {
+            let loops = outline.polygons((max - min).max_element() * FACET);
+            return umbra::mesh(&loops, center);
+        }
+
+        let pieces = Pieces::within(levels / 255.0 * SLACK);
+        let flat = radius * (RING_FLATNESS * levels).min(COARSEST_RING);
+        let circles = projection_circles(&outline, radius, flat);
+        let rings = pieces
+            .knots
+            .iter()
+            .map(|knot| (*knot, tangent_loops(&circles, knot.t, flat)))
+            .collect();
+        let field = Field::new(&outline, radius);
+        Refinement::new(field, options, rings).run(center)
+    }
+}
+
+impl Shadow {
+    /// The loops at the signed distance `t` inside the outline, in units of the penumbra radius, within `flatness`.
+    pub(crate) fn ring(&self, t: f64, flatness: f64) -> Vec<Vec<DVec2>> {
+        let circles = projection_circles(&self.outline(flatness), self.radius(), flatness);
+        tangent_loops(&circles, t, flatness)
+    }
+
+    /// The smallest box that holds the umbra, or none where the light is nowhere wholly hidden.
+    #[must_use]
+    pub fn umbra_bounds(&self) -> Option<Bounds> {
+        let outline = self.exact_outline();
+        let (min, max) = outline.bounds()?;
+        let center = min.midpoint(max);
+        let circles = projection_circles(
+            &outline.moved(-center),
+            self.radius(),
+            self.radius() * UMBRA_FLATNESS,
+        );
+        let loops = tangent_loops(&circles, 1.0, self.radius() * UMBRA_FLATNESS);
+        let mut points = loops.iter().flatten();
+        let first = *points.next()?;
+        let (min, max) = points.fold((first, first), |(min, max), &p| (min.min(p), max.max(p)));
+        Some(Bounds::outwards(min + center, max + center))
+    }
+}
+
+/// The circles round the vertices of an outline that is seen through one radius everywhere.
+fn projection_circles(outline: &Outline, radius: f64, flatness: f64) -> Vec<Vec<ProjectionCircle>> {
+    let circle = |center| ProjectionCircle { center, radius };
+    let polygons = outline.polygons(flatness).into_iter();
+    polygons
+        .map(|points| points.into_iter().map(circle).collect())
+        .collect()
+}
+
+/// How far the chords of an umbra's arcs may be from them, over the penumbra radius.
+const UMBRA_FLATNESS: f64 = 1e-4;
+
+/// The part of the tolerance that flattening curves may use up.
+const FLATTENING_SHARE: f64 = 0.1;
+
+/// The part of the tolerance that straight pieces of the profile may use. Were it all, as with five pieces for one level,
+/// corners would need three times the triangles for the thousandths that are left.
+const SLACK: f64 = 0.9;
+
+/// How far chords of rings may be from their arcs, over the penumbra radius and a tolerance of one level. Refinement mends
+/// what is too coarse: half of it took a tenth more triangles, twice as much no fewer.
+const RING_FLATNESS: f64 = 0.005;
+
+/// The same at large tolerances: beyond, rings could cross.
+const COARSEST_RING: f64 = 0.02;
+
+/// How far the chords of a hard shadow's arcs may be from them, over its extent.
+const FACET: f64 = 1e-5;
+
+/// A closed loop of vertices at one distance from the outline.
+type Ring = (Knot, Vec<Vec<DVec2>>);

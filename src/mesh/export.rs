@@ -1,0 +1,55 @@
+//! Meshes as text: Wavefront OBJ and SVG.
+
+use core::fmt::Write;
+
+use glam::DVec2;
+
+use super::ShadowMesh;
+use crate::svg::{Svg, number};
+
+impl ShadowMesh {
+    /// The mesh as Wavefront OBJ: a vertex has its density as z, so that a viewer shows it as a relief, and the group is
+    /// named `name`. `first` is the number of vertices before it in the same file.
+    #[must_use]
+    pub fn to_obj(&self, name: &str, first: usize) -> String {
+        let mut text = String::new();
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "o {}", name.replace(char::is_whitespace, "_"));
+        for vertex in &self.vertices {
+            let [x, y] = vertex.position.map(f64::from);
+            let density = f64::from(vertex.density);
+            let _ = writeln!(
+                text,
+                "v {} {} {}",
+                number(x, 4),
+                number(y, 4),
+                number(density, 6)
+            );
+        }
+        for corners in self.indices.chunks_exact(3) {
+            let [a, b, c] = [0, 1, 2].map(|i: usize| corners[i] as usize + first + 1);
+            let _ = writeln!(text, "f {a} {b} {c}");
+        }
+        text
+    }
+}
+
+/// Meshes as one SVG picture, one pixel a unit, black with the densities as opacity. Each triangle is filled by the linear
+/// gradient that equals its interpolation.
+#[must_use]
+pub fn meshes_to_svg(meshes: &[ShadowMesh]) -> String {
+    let mut svg = Svg::new(1.0);
+    let mut bounds: Option<(DVec2, DVec2)> = None;
+    for mesh in meshes {
+        svg.draw("<g shape-rendering=\"crispEdges\">");
+        svg.draw_mesh(mesh, 1.0);
+        svg.draw("</g>");
+        for vertex in &mesh.vertices {
+            let p = DVec2::from(vertex.position.map(f64::from));
+            bounds = Some(bounds.map_or((p, p), |(min, max)| (min.min(p), max.max(p))));
+        }
+    }
+    let (min, max) = bounds.unwrap_or((DVec2::ZERO, DVec2::ONE));
+    let (min, max) = (min.floor(), max.ceil());
+    svg.finish((max - min).to_array(), min, max - min)
+}

@@ -1,0 +1,212 @@
+//! Gouraud rasterisation: densities interpolated along the edges of a triangle, and between them along each scan line
+//! (Gouraud 1971).
+
+use glam::DVec2;
+
+use super::{MeshVertex, ShadowMesh};
+use crate::density::DensitySink;
+use crate::error::Result;
+use crate::grid::Grid;
+
+/// A corner in pixels of the grid.
+#[derive(Debug, Clone, Copy)]
+struct Corner {
+    at: DVec2,
+    density: f64,
+}
+
+/// An edge from its upper to its lower end. Both triangles at an edge build it from the same two corners, so they find the
+/// same place for it on every scan line.
+#[derive(Debug, Clone, Copy)]
+struct Side {
+    top: Corner,
+    /// Changes of x and density from one scan line to the next.
+    slope: f64,
+    density_slope: f64,
+    bottom: f64,
+}
+
+impl Side {
+    fn between(a: Corner, b: Corner) -> Self {
+        let (top, bottom) = if (a.at.y, a.at.x) <= (b.at.y, b.at.x) {
+            (a, b)
+        } else {
+            (b, a)
+        };
+        let height = bottom.at.y - top.at.y;
+        let per_line = if height > 0.0 { 1.0 / height } else { 0.0 };
+        Self {
+            top,
+            slope: (bottom.at.x - top.at.x) * per_line,
+            density_slope: (bottom.density - top.density) * per_line,
+            bottom: bottom.at.y,
+        }
+    }
+
+    fn spans(&self, y: f64) -> bool {
+        self.top.at.y <= y && y < self.bottom
+    }
+
+    /// x and density on the scan line at `y`.
+    fn at(&self, y: f64) -> (f64, f64) {
+        let down = y - self.top.at.y;
+        (
+            self.top.at.x + self.slope * down,
+            self.top.density + self.density_slope * down,
+        )
+    }
+}
+
+impl ShadowMesh {
+    /// Draws the mesh on a grid: `densities` gets the interpolated density of each pixel's centre, 0 outside of the mesh.
+    /// A pixel centre on an edge belongs to the triangle right of it or below, so none is drawn twice and none left out.
+    ///
+    /// # Errors
+    /// [`Error::BufferSize`](crate::Error::BufferSize) when `densities` is shorter than the grid needs.
+    pub fn rasterize(&self, grid: &Grid, densities: &mut [f32]) -> Result<()> {
+        grid.check_buffer(densities.len())?;
+        for row in 0..grid.height() as usize {
+            densities[row * grid.stride()..][..grid.width() as usize].fill(0.0);
+        }
+        let mut sink = FloatSink {
+            densities,
+            stride: grid.stride(),
+        };
+        self.scan_convert(grid, &mut sink);
+        Ok(())
+    }
+
+    pub(crate) fn scan_convert(&self, grid: &Grid, sink: &mut impl DensitySink) {
+        for triangle in self.triangles() {
+            scan_convert(triangle, grid, sink);
+        }
+    }
+}
+
+struct FloatSink<'a> {
+    densities: &'a mut [f32],
+    stride: usize,
+}
+
+impl DensitySink for FloatSink<'_> {
+    fn put(&mut self, x: u32, y: u32, density: f32) {
+        self.densities[y as usize * self.stride + x as usize] = density;
+    }
+}
+
+fn scan_convert(triangle: [MeshVertex; 3], grid: &Grid, sink: &mut impl DensitySink) {
+    let [a, b, c] = triangle.map(|vertex| {
+        let position = DVec2::new(f64::from(vertex.position[0]), f64::from(vertex.position[1]));
+        Corner {
+            at: position * grid.pixels_per_unit() - grid.corner(),
+            density: f64::from(vertex.density),
+        }
+    });
+    let sides = [
+        Side::between(a, b),
+        Side::between(b, c),
+        Side::between(c, a),
+    ];
+    let top = sides
+        .iter()
+        .map(|side| side.top.at.y)
+        .fold(f64::MAX, f64::min);
+    let bottom = sides
+        .iter()
+        .map(|side| side.bottom)
+        .fold(f64::MIN, f64::max);
+    for row in centers(top, bottom, grid.height()) {
+        let y = f64::from(row) + 0.5;
+        let mut crossed = sides
+            .iter()
+            .filter(|side| side.spans(y))
+            .map(|side| side.at(y));
+        let (Some(first), Some(second)) = (crossed.next(), crossed.next()) else {
+            continue;
+        };
+        let (left, right) = if first.0 <= second.0 {
+            (first, second)
+        } else {
+            (second, first)
+        };
+        let width = right.0 - left.0;
+        if width <= 0.0 {
+            continue;
+        }
+        let step = (right.1 - left.1) / width;
+        let columns = centers(left.0, right.0, grid.width());
+        let mut density = left.1 + step * (f64::from(columns.start) + 0.5 - left.0);
+        for column in columns {
+            if sink.wants(column, row) {
+                sink.put(column, row, density as f32);
+            }
+            density += step;
+        }
+    }
+}
+
+/// The indices of the pixels whose centres are at or after `from` and before `to`, of `count` in a row.
+fn centers(from: f64, to: f64, count: u32) -> core::ops::Range<u32> {
+    let index = |v: f64| (v - 0.5).ceil().clamp(0.0, f64::from(count)) as u32;
+    index(from)..index(to)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Counts how often each pixel is given.
+    struct Count {
+        width: u32,
+        hits: Vec<u32>,
+        densities: Vec<f32>,
+    }
+
+    impl DensitySink for Count {
+        fn put(&mut self, x: u32, y: u32, density: f32) {
+            let index = (y * self.width + x) as usize;
+            self.hits[index] += 1;
+            self.densities[index] = density;
+        }
+    }
+
+    #[test]
+    fn a_fan_covers_every_pixel_once_and_a_plane_comes_out_flat() {
+        // Vertices on pixel centres and corners, where the rule matters; density is a plane.
+        let plane = |x: f32, y: f32| 0.1 + 0.02 * x + 0.01 * y;
+        let vertex = |x: f32, y: f32| MeshVertex {
+            position: [x, y],
+            density: plane(x, y),
+        };
+        let rim = [
+            vertex(0.0, 0.0),
+            vertex(7.5, 0.0),
+            vertex(16.0, 0.0),
+            vertex(16.0, 10.5),
+            vertex(16.0, 16.0),
+            vertex(3.25, 16.0),
+            vertex(0.0, 16.0),
+            vertex(0.0, 8.5),
+        ];
+        let mut vertices = vec![vertex(8.5, 8.5)];
+        vertices.extend(rim);
+        let indices = (1..=8).flat_map(|i| [0, i, i % 8 + 1]).collect();
+        let mesh = ShadowMesh {
+            vertices,
+            indices,
+            ..ShadowMesh::empty()
+        };
+        let grid = Grid::new([0.0, 0.0], [16, 16], 1.0).unwrap();
+        let mut count = Count {
+            width: 16,
+            hits: vec![0; 256],
+            densities: vec![0.0; 256],
+        };
+        mesh.scan_convert(&grid, &mut count);
+        assert!(count.hits.iter().all(|&hits| hits == 1), "{:?}", count.hits);
+        for (index, density) in count.densities.iter().enumerate() {
+            let (x, y) = ((index % 16) as f32 + 0.5, (index / 16) as f32 + 0.5);
+            assert!((density - plane(x, y)).abs() < 1e-6);
+        }
+    }
+}

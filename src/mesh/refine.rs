@@ -1,0 +1,428 @@
+//! Triangles between the rings, and more of them where interpolation is still wrong.
+//!
+//! Where an edge is straight the rings' values balance the error and nothing is added. Elsewhere each round samples
+//! every new triangle and adds a vertex at its worst point, most wrong first, until none is wrong by more than the
+//! tolerance.
+
+use std::collections::HashMap;
+
+use glam::DVec2;
+use spade::handles::{FixedFaceHandle, FixedVertexHandle, InnerTag};
+use spade::{
+    ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation, mitigate_underflow,
+};
+
+use super::profile::Profile;
+use super::umbra::{self, LoopVertex};
+use super::{MeshOptions, MeshVertex, Ring, ShadowMesh};
+use crate::density::Field;
+
+type Triangles = ConstrainedDelaunayTriangulation<Vertex>;
+type Face = FixedFaceHandle<InnerTag>;
+
+/// Rounds of refinement at most. Each halves the larger triangles: the finest tolerance takes about 12.
+const ROUNDS: usize = 40;
+
+/// Vertices are not added nearer to another than this, over the penumbra radius: nothing would be gained.
+const NEAREST: f64 = 1e-3;
+
+/// Where a triangle is sampled, as weights of its corners: along its edges by sixths (the corners' own errors are known),
+/// and inside.
+const EDGE_SAMPLES: [f64; 5] = [1.0 / 6.0, 1.0 / 3.0, 0.5, 2.0 / 3.0, 5.0 / 6.0];
+const INNER_SAMPLES: [[f64; 3]; 7] = [
+    [1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0],
+    [0.6, 0.2, 0.2],
+    [0.2, 0.6, 0.2],
+    [0.2, 0.2, 0.6],
+    [0.46, 0.46, 0.08],
+    [0.46, 0.08, 0.46],
+    [0.08, 0.46, 0.46],
+];
+
+#[derive(Debug, Clone, Copy)]
+struct Vertex {
+    position: Point2<f64>,
+    density: f64,
+    /// The ring it was made for: 0 is the outer edge.
+    ring: Option<usize>,
+}
+
+impl HasPosition for Vertex {
+    type Scalar = f64;
+
+    fn position(&self) -> Point2<f64> {
+        self.position
+    }
+}
+
+/// On which side of the penumbra's two edges a face lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Region {
+    Outside,
+    Penumbra,
+    Umbra,
+}
+
+/// What sampling found out about a triangle.
+#[derive(Debug, Clone, Copy)]
+struct Assessment {
+    /// The largest difference from the profile's density, where a vertex would mend it.
+    error: f64,
+    /// Where that is, and on which edge if on one.
+    worst: DVec2,
+    edge: Option<usize>,
+    /// The largest difference from the exact density.
+    exact_error: f64,
+}
+
+pub(super) struct Refinement {
+    field: Field,
+    options: MeshOptions,
+    triangles: Triangles,
+    /// For each ring, by how much its vertices differ from the density where they are, to balance errors.
+    offsets: Vec<f64>,
+    umbra: Vec<Vec<FixedVertexHandle>>,
+    assessed: HashMap<[usize; 3], Assessment>,
+}
+
+impl Refinement {
+    pub(super) fn new(field: Field, options: MeshOptions, rings: Vec<Ring>) -> Self {
+        let offset = |ring: &Ring| match options.profile {
+            Profile::Disc => ring.0.value - Profile::Disc.at(ring.0.t),
+            _ => 0.0,
+        };
+        let mut refinement = Self {
+            field,
+            options,
+            triangles: Triangles::new(),
+            offsets: rings.iter().map(offset).collect(),
+            umbra: Vec::new(),
+            assessed: HashMap::new(),
+        };
+        for (index, (_, loops)) in rings.iter().enumerate() {
+            for points in loops {
+                let handles: Vec<_> = points
+                    .iter()
+                    .filter_map(|&point| refinement.insert(point, Some(index)))
+                    .collect();
+                for (&from, &to) in handles.iter().zip(handles.iter().cycle().skip(1)) {
+                    if from != to {
+                        refinement.triangles.try_add_constraint(from, to);
+                    }
+                }
+                if index + 1 == refinement.offsets.len() {
+                    refinement.umbra.push(handles);
+                }
+            }
+        }
+        refinement
+    }
+
+    /// The mesh, its vertices moved by `center`.
+    pub(super) fn run(mut self, center: DVec2) -> ShadowMesh {
+        let limit = self.options.tolerance.as_levels() / 255.0;
+        let nearest = NEAREST * self.field.radius();
+        let mut complete = false;
+        for _ in 0..ROUNDS {
+            let mut wrong: Vec<(f64, [usize; 3])> = Vec::new();
+            for face in self.penumbra() {
+                let (key, assessment) = self.assess(face);
+                if assessment.error > limit {
+                    wrong.push((assessment.error, key));
+                }
+            }
+            complete = wrong.is_empty();
+            if complete {
+                break;
+            }
+            wrong.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+            let before = self.triangles.num_vertices();
+            for (_, key) in wrong {
+                if self.triangles.num_vertices() >= self.options.max_vertices {
+                    break;
+                }
+                self.mend(key, limit, nearest);
+            }
+            if self.triangles.num_vertices() == before {
+                break;
+            }
+        }
+        self.finish(center, complete)
+    }
+
+    /// The density that a vertex or sample at `point` should have.
+    fn target(&mut self, point: DVec2) -> (f64, f64) {
+        let exact = self.field.at(point);
+        (exact, self.options.profile.in_place_of(exact))
+    }
+
+    fn insert(&mut self, point: DVec2, ring: Option<usize>) -> Option<FixedVertexHandle> {
+        let last = self.offsets.len() - 1;
+        let density = match ring {
+            Some(0) => 0.0,
+            Some(ring) if ring == last => self.options.profile.in_place_of(1.0),
+            _ => {
+                let offset = ring.map_or(0.0, |ring| self.offsets[ring]);
+                (self.target(point).1 + offset).clamp(0.0, 1.0)
+            }
+        };
+        let position = mitigate_underflow(Point2::new(point.x, point.y));
+        self.triangles
+            .insert(Vertex {
+                position,
+                density,
+                ring,
+            })
+            .ok()
+    }
+
+    /// The faces between outer edge and umbra, found by walking from outside and counting edges of the two.
+    fn penumbra(&self) -> Vec<Face> {
+        let last = self.offsets.len() - 1;
+        let mut regions: Vec<Option<Region>> = vec![None; self.triangles.num_all_faces()];
+        let mut open = vec![self.triangles.outer_face().fix()];
+        regions[open[0].index()] = Some(Region::Outside);
+        let mut found = Vec::new();
+        while let Some(face) = open.pop() {
+            let Some(region) = regions[face.index()] else {
+                continue;
+            };
+            let face = self.triangles.face(face);
+            if let Some(inner) = face.as_inner().filter(|_| region == Region::Penumbra) {
+                found.push(inner.fix());
+            }
+            let edges: Vec<_> = match face.as_inner() {
+                Some(inner) => inner.adjacent_edges().to_vec(),
+                None => self.triangles.convex_hull().collect(),
+            };
+            for edge in edges {
+                let next = edge.rev().face().fix();
+                if regions[next.index()].is_some() {
+                    continue;
+                }
+                let ring = edge
+                    .from()
+                    .data()
+                    .ring
+                    .filter(|&ring| Some(ring) == edge.to().data().ring);
+                let crossed = ring.filter(|_| edge.is_constraint_edge());
+                regions[next.index()] = Some(match (region, crossed) {
+                    (Region::Outside, Some(0)) | (Region::Umbra, Some(_))
+                        if crossed == Some(0) || crossed == Some(last) =>
+                    {
+                        Region::Penumbra
+                    }
+                    (Region::Penumbra, Some(0)) => Region::Outside,
+                    (Region::Penumbra, Some(ring)) if ring == last => Region::Umbra,
+                    _ => region,
+                });
+                open.push(next);
+            }
+        }
+        found.sort_by_key(|face| face.index());
+        found
+    }
+
+    fn assess(&mut self, face: Face) -> ([usize; 3], Assessment) {
+        let corners = self
+            .triangles
+            .face(face)
+            .vertices()
+            .map(|vertex| vertex.fix());
+        let key = corners.map(|corner| corner.index());
+        if let Some(known) = self.assessed.get(&key) {
+            return (key, *known);
+        }
+        let data = corners.map(|corner| *self.triangles.vertex(corner).data());
+        let at = data.map(|vertex| DVec2::new(vertex.position.x, vertex.position.y));
+        let mut result = Assessment {
+            error: 0.0,
+            worst: at[0],
+            edge: None,
+            exact_error: 0.0,
+        };
+        let last = self.offsets.len() - 1;
+        for edge in 0..3 {
+            let (a, b) = (edge, (edge + 1) % 3);
+            // Along the two edges of the penumbra density is 0 and 1 by definition: what is wrong there is their arcs'
+            // flattening, and no vertex on the chord mends it.
+            let fixed = data[a].ring == data[b].ring
+                && (data[a].ring == Some(0) || data[a].ring == Some(last))
+                && self.triangles.exists_constraint(corners[a], corners[b]);
+            for share in EDGE_SAMPLES {
+                let point = at[a].lerp(at[b], share);
+                let density = data[a].density + (data[b].density - data[a].density) * share;
+                self.sample(point, density, (!fixed).then_some(Some(edge)), &mut result);
+            }
+        }
+        for [a, b, c] in INNER_SAMPLES {
+            let point = at[0] * a + at[1] * b + at[2] * c;
+            let density = data[0].density * a + data[1].density * b + data[2].density * c;
+            self.sample(point, density, Some(None), &mut result);
+        }
+        self.assessed.insert(key, result);
+        (key, result)
+    }
+
+    /// Compares an interpolated density. `place` is the edge that the point is on, or none where no vertex may be added.
+    fn sample(
+        &mut self,
+        point: DVec2,
+        density: f64,
+        place: Option<Option<usize>>,
+        result: &mut Assessment,
+    ) {
+        let (exact, target) = self.target(point);
+        result.exact_error = result.exact_error.max((density - exact).abs());
+        let error = (density - target).abs();
+        if let Some(edge) = place
+            && error > result.error
+        {
+            (result.error, result.worst, result.edge) = (error, point, edge);
+        }
+    }
+
+    /// Adds a vertex at a triangle's worst point, unless vertices added since have mended it.
+    fn mend(&mut self, key: [usize; 3], limit: f64, nearest: f64) {
+        let Some(&assessment) = self.assessed.get(&key) else {
+            return;
+        };
+        let corners = key.map(FixedVertexHandle::from_index);
+        let is_face = |a: usize, b: usize| {
+            let edge = self
+                .triangles
+                .get_edge_from_neighbors(corners[a], corners[b])?;
+            let opposite = edge.next().to().fix();
+            Some(opposite == corners[3 - a - b])
+        };
+        let untouched = is_face(0, 1) == Some(true);
+        if !untouched && self.error_at(assessment.worst) <= limit {
+            return;
+        }
+        let at = corners.map(|corner| {
+            let position = self.triangles.vertex(corner).position();
+            DVec2::new(position.x, position.y)
+        });
+        if at
+            .iter()
+            .any(|corner| (*corner - assessment.worst).length() < nearest)
+        {
+            return;
+        }
+        let constraint = assessment.edge.filter(|_| untouched).and_then(|edge| {
+            let (a, b) = (corners[edge], corners[(edge + 1) % 3]);
+            let edge = self.triangles.get_edge_from_neighbors(a, b)?;
+            edge.is_constraint_edge()
+                .then(|| (a, b, edge.as_undirected().fix()))
+        });
+        match constraint {
+            Some((a, b, edge)) => {
+                // A vertex beside a constraint by a rounding error would leave a triangle of no area: the constraint is
+                // taken away first and led by way of the vertex after.
+                let ring = self.triangles.vertex(a).data().ring;
+                self.triangles.remove_constraint_edge(edge);
+                if let Some(vertex) = self.insert(assessment.worst, ring) {
+                    self.triangles.try_add_constraint(a, vertex);
+                    self.triangles.try_add_constraint(vertex, b);
+                }
+            }
+            None => {
+                self.insert(assessment.worst, None);
+            }
+        }
+    }
+
+    /// The difference at a point in the triangulation as it is now.
+    fn error_at(&mut self, point: DVec2) -> f64 {
+        use spade::PositionInTriangulation::{OnEdge, OnFace};
+        let position = Point2::new(point.x, point.y);
+        let corners: Vec<Vertex> = match self.triangles.locate(position) {
+            OnFace(face) => self
+                .triangles
+                .face(face)
+                .vertices()
+                .map(|v| *v.data())
+                .to_vec(),
+            OnEdge(edge) => self
+                .triangles
+                .directed_edge(edge)
+                .vertices()
+                .map(|v| *v.data())
+                .to_vec(),
+            _ => return 0.0,
+        };
+        let at = |vertex: &Vertex| DVec2::new(vertex.position.x, vertex.position.y) - point;
+        let density = match corners.as_slice() {
+            [a, b, c] => {
+                let weights = [(b, c), (c, a), (a, b)].map(|(v, w)| at(v).perp_dot(at(w)));
+                let sum: f64 = weights.iter().sum();
+                (weights[0] * a.density + weights[1] * b.density + weights[2] * c.density) / sum
+            }
+            [a, b] => {
+                let share = at(a).length() / (at(b) - at(a)).length();
+                a.density + (b.density - a.density) * share
+            }
+            _ => return 0.0,
+        };
+        (density - self.target(point).1).abs()
+    }
+
+    fn finish(mut self, center: DVec2, complete: bool) -> ShadowMesh {
+        let mut mesh = ShadowMesh {
+            complete,
+            ..ShadowMesh::empty()
+        };
+        let mut error: f64 = 0.0;
+        let faces = self.penumbra();
+        for &face in &faces {
+            error = error.max(self.assess(face).1.exact_error);
+        }
+        mesh.vertices = self
+            .triangles
+            .vertices()
+            .map(|vertex| {
+                let position = vertex.position();
+                MeshVertex {
+                    position: (DVec2::new(position.x, position.y) + center)
+                        .as_vec2()
+                        .to_array(),
+                    density: vertex.data().density as f32,
+                }
+            })
+            .collect();
+        for face in faces {
+            let corners = self
+                .triangles
+                .face(face)
+                .vertices()
+                .map(|vertex| vertex.fix().index() as u32);
+            let [a, b, c] =
+                corners.map(|i| DVec2::from(mesh.vertices[i as usize].position.map(f64::from)));
+            // Far from the origin `f32` may bring vertices together: what has no area left is not drawn.
+            if (b - a).perp_dot(c - a) > 0.0 {
+                mesh.indices.extend(corners);
+            }
+        }
+        let loops: Vec<Vec<LoopVertex>> = self
+            .umbra
+            .iter()
+            .map(|handles| {
+                handles
+                    .iter()
+                    .map(|&handle| {
+                        let position = self.triangles.vertex(handle).position();
+                        LoopVertex {
+                            position: DVec2::new(position.x, position.y),
+                            index: handle.index() as u32,
+                        }
+                    })
+                    .collect()
+            })
+            .collect();
+        let umbra = self.options.profile.in_place_of(1.0);
+        error = error.max(if loops.is_empty() { 0.0 } else { 1.0 - umbra });
+        mesh.error_levels = error * 255.0;
+        umbra::fill(&loops, umbra as f32, center, &mut mesh);
+        mesh
+    }
+}
