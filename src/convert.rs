@@ -40,7 +40,7 @@ impl From<&kurbo::BezPath> for Path {
                 PathEl::LineTo(to) => path.push(Segment::Line(point(to))),
                 PathEl::QuadTo(a, to) => path.push(Segment::Quad(point(a), point(to))),
                 PathEl::CurveTo(a, b, to) => {
-                    path.push(Segment::Cubic(point(a), point(b), point(to)))
+                    path.push(Segment::Cubic(point(a), point(b), point(to)));
                 }
                 PathEl::ClosePath => {
                     path.close();

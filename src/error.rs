@@ -1,5 +1,7 @@
 //! What was wrong with an input, where, and what to do about it.
 
+use core::fmt;
+
 /// Coordinates, sizes, radii and elevations may not pass this magnitude, in scene units: 2^24, where an
 /// `f32` stops telling one unit from the next.
 pub const MAX_COORDINATE: f64 = 16_777_216.0;
@@ -18,7 +20,7 @@ pub type Result<T, E = Error> = core::result::Result<T, E>;
 #[non_exhaustive]
 pub enum Error {
     /// A number is NaN or infinite.
-    #[error("{field} is {value}: give a finite number")]
+    #[error("{field} is {}: give a finite number", Shown(*value))]
     NotFinite {
         /// The field that holds it.
         field: &'static str,
@@ -26,7 +28,7 @@ pub enum Error {
         value: f64,
     },
     /// A number lies outside its range.
-    #[error("{field} is {value}: give a number from {min} to {max}")]
+    #[error("{field} is {}: give a number from {} to {}", Shown(*value), Shown(*min), Shown(*max))]
     OutOfRange {
         /// The field that holds it.
         field: &'static str,
@@ -38,7 +40,7 @@ pub enum Error {
         max: f64,
     },
     /// A width, height, radius or extent that must be positive is zero or negative.
-    #[error("{field} is {value}: give a number above 0")]
+    #[error("{field} is {}: give a number above 0", Shown(*value))]
     NotPositive {
         /// The field that holds it.
         field: &'static str,
@@ -47,7 +49,9 @@ pub enum Error {
     },
     /// The caster is at or above the light: no plane below would be in its shadow.
     #[error(
-        "elevation {elevation} is not below the light at z = {light_z}: lower the caster or raise the light"
+        "elevation {} is not below the light at z = {}: lower the caster or raise the light",
+        Shown(*elevation),
+        Shown(*light_z)
     )]
     CasterNotBelowLight {
         /// The caster's elevation, scene units.
@@ -57,7 +61,9 @@ pub enum Error {
     },
     /// The caster is below its receiver.
     #[error(
-        "elevation {elevation} is below the receiver at {receiver}: a caster must be at or above what it shades"
+        "elevation {} is below the receiver at {}: a caster must be at or above what it shades",
+        Shown(*elevation),
+        Shown(*receiver)
     )]
     CasterBelowReceiver {
         /// The caster's elevation, scene units.
@@ -67,7 +73,8 @@ pub enum Error {
     },
     /// The caster is so near the light that its shadow passes [`MAX_COORDINATE`].
     #[error(
-        "the shadow of a caster at elevation {elevation} reaches {extent:e} units, over {MAX_COORDINATE}: move it away from the light"
+        "the shadow of a caster at elevation {} reaches {extent:.3e} units, over {MAX_COORDINATE}: move it away from the light",
+        Shown(*elevation)
     )]
     ShadowTooLarge {
         /// The caster's elevation, scene units.
@@ -75,8 +82,16 @@ pub enum Error {
         /// How far the shadow would reach, scene units.
         extent: f64,
     },
+    /// A ground that something would be seen through.
+    #[error("{field} has the alpha {alpha} of 255: give an opaque colour")]
+    NotOpaque {
+        /// The field that holds it.
+        field: &'static str,
+        /// The colour's alpha.
+        alpha: u8,
+    },
     /// A path or polygon without a single line or curve.
-    #[error("{field} has no segments: give at least one closed contour")]
+    #[error("{field} encloses nothing: give a contour of at least three points")]
     EmptyPath {
         /// The field that holds it.
         field: &'static str,
@@ -131,6 +146,22 @@ pub enum Error {
     },
 }
 
+/// A number as its user wrote it: most were given as `f32`, and their doubles end in digits that nobody wrote.
+struct Shown(f64);
+
+impl fmt::Display for Shown {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let single = self.0 as f32;
+        let plain = (1e-4..1e9).contains(&self.0.abs()) || self.0 == 0.0 || !self.0.is_finite();
+        match (f64::from(single) == self.0, plain) {
+            (true, true) => write!(f, "{single}"),
+            (true, false) => write!(f, "{single:e}"),
+            (false, true) => write!(f, "{}", self.0),
+            (false, false) => write!(f, "{:e}", self.0),
+        }
+    }
+}
+
 /// The value as `f64`, when it is finite and within `±MAX_COORDINATE`.
 pub(crate) fn coordinate(field: &'static str, value: f64) -> Result<f64> {
     within(field, value, -MAX_COORDINATE, MAX_COORDINATE)
@@ -181,10 +212,7 @@ mod tests {
         let text = positive("radius", -2.0).unwrap_err().to_string();
         assert_eq!(text, "radius is -2: give a number above 0");
         let text = coordinate("x", 1e9).unwrap_err().to_string();
-        assert_eq!(
-            text,
-            "x is 1000000000: give a number from -16777216 to 16777216"
-        );
+        assert_eq!(text, "x is 1e9: give a number from -16777216 to 16777216");
         assert_eq!(
             length("z", f64::NAN).unwrap_err().to_string(),
             "z is NaN: give a finite number"

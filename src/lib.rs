@@ -67,7 +67,7 @@
 //! |---|---|---|
 //! | `raster` (default) | [`Renderer`]: pictures on tiny-skia pixmaps; paths from tiny-skia | tiny-skia |
 //! | `svg-path` | [`Path::from_svg`] | svgtypes |
-//! | `scene` | [`Scene::from_json`] | serde, serde_json, `svg-path` |
+//! | `scene` | [`Scene::from_json`] | `serde`, `serde_json`, `svg-path` |
 //! | `cli` | the command line `penumbral` | clap, image, indicatif, `raster`, `scene` |
 //! | `lyon`, `kurbo` | paths from these crates | kurbo |
 //!

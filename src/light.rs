@@ -1,5 +1,7 @@
 //! The light, and the projection of one plane on another.
 
+use core::borrow::Borrow;
+
 use glam::{DAffine2, DMat2, DVec2};
 
 use crate::error::{self, Error, MAX_COORDINATE, Result};
@@ -50,6 +52,21 @@ impl Projection {
             offset: DVec2::ZERO,
             radius,
         }
+    }
+
+    /// Refuses a shape at `elevation` whose shadow would pass [`MAX_COORDINATE`].
+    pub(crate) fn check_reach(&self, shape: &Shape, elevation: f32) -> Result<()> {
+        let reach = shape.hull().map_or(0.0, |(min, max)| {
+            let far = |p: DVec2| (p * self.scale + self.offset).abs().max_element();
+            far(min).max(far(max)) + self.radius
+        });
+        if reach > MAX_COORDINATE {
+            return Err(Error::ShadowTooLarge {
+                elevation: f64::from(elevation),
+                extent: reach,
+            });
+        }
+        Ok(())
     }
 
     pub(crate) fn affine(&self) -> DAffine2 {
@@ -125,7 +142,7 @@ impl Light {
     /// A number that is not finite or passes [`MAX_COORDINATE`], a caster at or above the light or below its
     /// receiver, and a caster so near the light that its shadow passes [`MAX_COORDINATE`].
     pub fn cast(&self, shape: &Shape, elevation: f32, receiver: f32) -> Result<Shadow> {
-        self.cast_all(&[shape], elevation, receiver)
+        self.cast_all(core::slice::from_ref(shape), elevation, receiver)
     }
 
     /// The one shadow of several shapes at one `elevation`, united before they are cast: neither a seam where they
@@ -133,20 +150,20 @@ impl Light {
     ///
     /// # Errors
     /// As [`Light::cast`].
-    pub fn cast_all(&self, shapes: &[&Shape], elevation: f32, receiver: f32) -> Result<Shadow> {
+    pub fn cast_all<S: Borrow<Shape>>(
+        &self,
+        shapes: &[S],
+        elevation: f32,
+        receiver: f32,
+    ) -> Result<Shadow> {
         let projection = self.projection(elevation, receiver)?;
+        for shape in shapes {
+            projection.check_reach(shape.borrow(), elevation)?;
+        }
         if elevation == receiver {
             return Ok(Shadow::empty());
         }
-        let shadow = Shadow::project(shapes, &projection);
-        let reach = shadow.reach();
-        if reach > MAX_COORDINATE {
-            return Err(Error::ShadowTooLarge {
-                elevation: f64::from(elevation),
-                extent: reach,
-            });
-        }
-        Ok(shadow)
+        Ok(Shadow::project(shapes, &projection))
     }
 
     /// By how much an outline is larger than its caster at `elevation`, seen on the plane at elevation `receiver`.

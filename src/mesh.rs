@@ -10,6 +10,7 @@ mod export;
 mod gouraud;
 mod profile;
 mod refine;
+mod settle;
 mod tangents;
 mod umbra;
 
@@ -17,7 +18,6 @@ use glam::DVec2;
 
 pub use export::meshes_to_svg;
 pub use profile::Profile;
-pub(crate) use profile::disc_distance;
 use profile::{Knot, Pieces};
 use refine::Refinement;
 use tangents::{ProjectionCircle, tangent_loops};
@@ -211,18 +211,12 @@ impl Shadow {
             .iter()
             .map(|knot| (*knot, tangent_loops(&circles, knot.t, flat)))
             .collect();
-        let field = Field::new(&outline, radius);
+        let field = Field::new(&self.exact_outline().moved(-center), radius);
         Refinement::new(field, options, rings).run(center)
     }
 }
 
 impl Shadow {
-    /// The loops at the signed distance `t` inside the outline, in units of the penumbra radius, within `flatness`.
-    pub(crate) fn ring(&self, t: f64, flatness: f64) -> Vec<Vec<DVec2>> {
-        let circles = projection_circles(&self.outline(flatness), self.radius(), flatness);
-        tangent_loops(&circles, t, flatness)
-    }
-
     /// The smallest box that holds the umbra, or none where the light is nowhere wholly hidden.
     #[must_use]
     pub fn umbra_bounds(&self) -> Option<Bounds> {
@@ -259,7 +253,7 @@ const FLATTENING_SHARE: f64 = 0.1;
 
 /// The part of the tolerance that straight pieces of the profile may use. Were it all, as with five pieces for one level,
 /// corners would need three times the triangles for the thousandths that are left.
-const SLACK: f64 = 0.9;
+const SLACK: f64 = 0.85;
 
 /// How far chords of rings may be from their arcs, over the penumbra radius and a tolerance of one level. Refinement mends
 /// what is too coarse: half of it took a tenth more triangles, twice as much no fewer.

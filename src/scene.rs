@@ -142,12 +142,17 @@ impl Scene {
         Ok(self)
     }
 
-    /// The same on another ground. It is opaque: an alpha of its colour is refused.
+    /// The same on another ground.
     ///
     /// # Errors
-    /// A colour whose alpha is not 255.
+    /// [`Error::NotOpaque`] for a colour whose alpha is not 255.
     pub fn with_background(mut self, background: Color) -> Result<Self> {
-        error::within("background alpha", f64::from(background.a), 255.0, 255.0)?;
+        if background.a < 255 {
+            return Err(Error::NotOpaque {
+                field: "background",
+                alpha: background.a,
+            });
+        }
         self.background = background;
         Ok(self)
     }
@@ -162,10 +167,12 @@ impl Scene {
     /// Adds a surface. Surfaces paint by elevation, those of one elevation in the order they were added.
     ///
     /// # Errors
-    /// An elevation below 0 or not below the light, an opacity not from 0 to 1.
+    /// An elevation below 0 or not below the light, an opacity not from 0 to 1, a caster so near the light that its shadow
+    /// passes [`MAX_COORDINATE`](crate::MAX_COORDINATE).
     pub fn push(&mut self, surface: Surface) -> Result<()> {
         error::within("opacity", f64::from(surface.opacity), 0.0, 1.0)?;
-        self.light.projection(surface.elevation, 0.0)?;
+        let projection = self.light.projection(surface.elevation, 0.0)?;
+        projection.check_reach(&surface.shape, surface.elevation)?;
         self.surfaces.push(surface);
         Ok(())
     }

@@ -3,6 +3,7 @@
 //! Before it all is about planes and shapes, after it all is about loops of projection circles. Circles of one radius,
 //! as every caster parallel to its receiver has them, are kept as an outline and that radius.
 
+use core::borrow::Borrow;
 use std::borrow::Cow;
 use std::sync::OnceLock;
 
@@ -70,13 +71,18 @@ impl Shadow {
         Self::default()
     }
 
-    pub(crate) fn project(shapes: &[&Shape], projection: &Projection) -> Self {
+    pub(crate) fn project<S: Borrow<Shape>>(shapes: &[S], projection: &Projection) -> Self {
         let affine = projection.affine();
         let mut shadow = Self {
             radius: projection.radius,
             ..Self::default()
         };
-        for group in overlapping(shapes.iter().map(|shape| shape.mapped(&affine)).collect()) {
+        for group in overlapping(
+            shapes
+                .iter()
+                .map(|shape| shape.borrow().mapped(&affine))
+                .collect(),
+        ) {
             let outlines: Option<Vec<Outline>> = group.iter().map(Outline::of_simple).collect();
             match outlines {
                 Some(mut outlines) if outlines.len() == 1 => {
@@ -92,15 +98,14 @@ impl Shadow {
         shadow
     }
 
-    /// How far from the origin the shadow reaches, along x or y, in scene units.
-    pub(crate) fn reach(&self) -> f64 {
-        let curved = self.curved.iter().flatten().filter_map(Shape::hull);
-        self.fixed
-            .bounds()
-            .into_iter()
-            .chain(curved)
-            .map(|(min, max)| min.abs().max(max.abs()).max_element() + self.radius)
-            .fold(0.0, f64::max)
+    /// The same outline seen through another penumbra radius.
+    pub(crate) fn with_radius(&self, radius: f64) -> Self {
+        Self {
+            radius,
+            fixed: self.fixed.clone(),
+            curved: self.curved.clone(),
+            exact: OnceLock::new(),
+        }
     }
 
     /// The penumbra radius r, in scene units: how far from the outline the penumbra reaches, both ways.

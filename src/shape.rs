@@ -206,6 +206,14 @@ impl Shape {
         Ok(shape)
     }
 
+    /// The shape moved by `offset` (x, y; scene units).
+    ///
+    /// # Errors
+    /// As [`Shape::transformed`].
+    pub fn translated(&self, offset: [f32; 2]) -> Result<Self> {
+        self.transformed([1.0, 0.0, 0.0, 1.0, offset[0], offset[1]])
+    }
+
     pub(crate) fn mapped(&self, affine: &DAffine2) -> Self {
         Self {
             contours: self

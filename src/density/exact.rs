@@ -15,7 +15,7 @@ use crate::scratch::Scratch;
 use crate::shadow::Shadow;
 
 /// The side of the smallest tiles, in pixels: smaller ones cut more than they save.
-const LEAF: i32 = 8;
+const LEAF: i64 = 8;
 
 /// Below this penumbra radius in pixels the coverage of pixels is averaged over the disc, from there on the density over
 /// the pixel: each the smoother function of the two, as the disc or the pixel is the larger.
@@ -48,15 +48,15 @@ pub(crate) fn fill(
         side,
         reach,
         phase: corner - whole,
-        first: [whole.x, whole.y].map(|v| v as i32),
-        size: [grid.width(), grid.height()].map(|v| v as i32),
+        first: [whole.x, whole.y].map(|v| v as i64),
+        size: [grid.width(), grid.height()].map(i64::from),
         scratch,
         sink,
     };
     let mut edges = painter.scratch.take();
     edges.extend(outline.edges().map(|edge| edge.placed(scale, -base)));
     let mut tile = LEAF;
-    while f64::from(tile) < extent {
+    while (tile as f64) < extent {
         tile *= 2;
     }
     painter.tile([0, 0], tile, &edges);
@@ -71,27 +71,24 @@ struct Painter<'a, S> {
     /// Where in a pixel of the shadow's own coordinates a pixel of the grid begins.
     phase: DVec2,
     /// The grid's first pixel and its size, in the shadow's own pixels.
-    first: [i32; 2],
-    size: [i32; 2],
+    first: [i64; 2],
+    size: [i64; 2],
     scratch: &'a mut Scratch,
     sink: &'a mut S,
 }
 
 impl<S: DensitySink> Painter<'_, S> {
-    fn tile(&mut self, at: [i32; 2], side: i32, edges: &[Edge]) {
+    fn tile(&mut self, at: [i64; 2], side: i64, edges: &[Edge]) {
         let range = |axis: usize| {
-            let first = at[axis].max(self.first[axis]);
-            let end = at[axis]
-                .saturating_add(side)
-                .min(self.first[axis].saturating_add(self.size[axis]));
-            first..end
+            let end = self.first[axis] + self.size[axis];
+            at[axis].max(self.first[axis])..(at[axis] + side).min(end)
         };
         let (columns, rows) = (range(0), range(1));
         if columns.is_empty() || rows.is_empty() {
             return;
         }
-        let min = DVec2::new(f64::from(at[0]), f64::from(at[1])) + self.phase - self.reach;
-        let max = min + f64::from(side) + 2.0 * self.reach;
+        let min = DVec2::new(at[0] as f64, at[1] as f64) + self.phase - self.reach;
+        let max = min + side as f64 + 2.0 * self.reach;
         let (mut clipped, mut spare) = (self.scratch.take(), self.scratch.take());
         let met = clip_to_box(edges, min, max, &mut spare, &mut clipped);
         self.scratch.give(spare);
@@ -118,8 +115,8 @@ impl<S: DensitySink> Painter<'_, S> {
         self.scratch.give(clipped);
     }
 
-    fn pixel(&mut self, at: [i32; 2], edges: &[Edge]) -> f64 {
-        let center = DVec2::new(f64::from(at[0]), f64::from(at[1])) + self.phase + 0.5;
+    fn pixel(&mut self, at: [i64; 2], edges: &[Edge]) -> f64 {
+        let center = DVec2::new(at[0] as f64, at[1] as f64) + self.phase + 0.5;
         if self.side == 0.0 {
             return at_point(edges.iter(), center, self.radius);
         }

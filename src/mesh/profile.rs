@@ -49,7 +49,7 @@ impl Profile {
 }
 
 /// The signed distance inside a straight edge, in units of the penumbra radius, where the disc's profile has the density.
-pub(crate) fn disc_distance(density: f64) -> f64 {
+fn disc_distance(density: f64) -> f64 {
     // F is odd about 1/2 and convex below it: Newton's steps from the outer side never pass the solution. Near the end
     // F is 2/3 (2 (1 + t))^1.5 / π.
     let tail = density.min(1.0 - density).max(0.0);

@@ -7,12 +7,13 @@
 use std::collections::HashMap;
 
 use glam::DVec2;
-use spade::handles::{FixedFaceHandle, FixedVertexHandle, InnerTag};
+use spade::handles::{FixedFaceHandle, FixedUndirectedEdgeHandle, FixedVertexHandle, InnerTag};
 use spade::{
     ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation, mitigate_underflow,
 };
 
 use super::profile::Profile;
+use super::settle::settle;
 use super::umbra::{self, LoopVertex};
 use super::{MeshOptions, MeshVertex, Ring, ShadowMesh};
 use crate::density::Field;
@@ -26,17 +27,23 @@ const ROUNDS: usize = 40;
 /// Vertices are not added nearer to another than this, over the penumbra radius: nothing would be gained.
 const NEAREST: f64 = 1e-3;
 
-/// Where a triangle is sampled, as weights of its corners: along its edges by sixths (the corners' own errors are known),
+/// The part of the tolerance that an error found by sampling may reach: between samples it is up to a tenth larger.
+const SAMPLED: f64 = 0.9;
+
+/// Where a triangle is sampled, as weights of its corners: along its edges by eighths (the corners' own errors are known),
 /// and inside.
-const EDGE_SAMPLES: [f64; 5] = [1.0 / 6.0, 1.0 / 3.0, 0.5, 2.0 / 3.0, 5.0 / 6.0];
-const INNER_SAMPLES: [[f64; 3]; 7] = [
+const EDGE_SAMPLES: [f64; 7] = [0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875];
+const INNER_SAMPLES: [[f64; 3]; 10] = [
     [1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0],
     [0.6, 0.2, 0.2],
     [0.2, 0.6, 0.2],
     [0.2, 0.2, 0.6],
-    [0.46, 0.46, 0.08],
-    [0.46, 0.08, 0.46],
-    [0.08, 0.46, 0.46],
+    [0.45, 0.45, 0.1],
+    [0.45, 0.1, 0.45],
+    [0.1, 0.45, 0.45],
+    [0.8, 0.1, 0.1],
+    [0.1, 0.8, 0.1],
+    [0.1, 0.1, 0.8],
 ];
 
 #[derive(Debug, Clone, Copy)]
@@ -68,9 +75,8 @@ enum Region {
 struct Assessment {
     /// The largest difference from the profile's density, where a vertex would mend it.
     error: f64,
-    /// Where that is, and on which edge if on one.
+    /// Where that is.
     worst: DVec2,
-    edge: Option<usize>,
     /// The largest difference from the exact density.
     exact_error: f64,
 }
@@ -120,12 +126,12 @@ impl Refinement {
 
     /// The mesh, its vertices moved by `center`.
     pub(super) fn run(mut self, center: DVec2) -> ShadowMesh {
-        let limit = self.options.tolerance.as_levels() / 255.0;
+        let limit = self.options.tolerance.as_levels() / 255.0 * SAMPLED;
         let nearest = NEAREST * self.field.radius();
         let mut complete = false;
         for _ in 0..ROUNDS {
             let mut wrong: Vec<(f64, [usize; 3])> = Vec::new();
-            for face in self.penumbra() {
+            for face in self.faces(Region::Penumbra) {
                 let (key, assessment) = self.assess(face);
                 if assessment.error > limit {
                     wrong.push((assessment.error, key));
@@ -176,8 +182,8 @@ impl Refinement {
             .ok()
     }
 
-    /// The faces between outer edge and umbra, found by walking from outside and counting edges of the two.
-    fn penumbra(&self) -> Vec<Face> {
+    /// The faces of a region, found by walking in from outside and minding the penumbra's two edges.
+    fn faces(&self, wanted: Region) -> Vec<Face> {
         let last = self.offsets.len() - 1;
         let mut regions: Vec<Option<Region>> = vec![None; self.triangles.num_all_faces()];
         let mut open = vec![self.triangles.outer_face().fix()];
@@ -188,7 +194,7 @@ impl Refinement {
                 continue;
             };
             let face = self.triangles.face(face);
-            if let Some(inner) = face.as_inner().filter(|_| region == Region::Penumbra) {
+            if let Some(inner) = face.as_inner().filter(|_| region == wanted) {
                 found.push(inner.fix());
             }
             let edges: Vec<_> = match face.as_inner() {
@@ -238,7 +244,6 @@ impl Refinement {
         let mut result = Assessment {
             error: 0.0,
             worst: at[0],
-            edge: None,
             exact_error: 0.0,
         };
         let last = self.offsets.len() - 1;
@@ -252,33 +257,25 @@ impl Refinement {
             for share in EDGE_SAMPLES {
                 let point = at[a].lerp(at[b], share);
                 let density = data[a].density + (data[b].density - data[a].density) * share;
-                self.sample(point, density, (!fixed).then_some(Some(edge)), &mut result);
+                self.sample(point, density, !fixed, &mut result);
             }
         }
         for [a, b, c] in INNER_SAMPLES {
             let point = at[0] * a + at[1] * b + at[2] * c;
             let density = data[0].density * a + data[1].density * b + data[2].density * c;
-            self.sample(point, density, Some(None), &mut result);
+            self.sample(point, density, true, &mut result);
         }
         self.assessed.insert(key, result);
         (key, result)
     }
 
-    /// Compares an interpolated density. `place` is the edge that the point is on, or none where no vertex may be added.
-    fn sample(
-        &mut self,
-        point: DVec2,
-        density: f64,
-        place: Option<Option<usize>>,
-        result: &mut Assessment,
-    ) {
+    /// Compares an interpolated density at a point where a vertex may be added or not.
+    fn sample(&mut self, point: DVec2, density: f64, mendable: bool, result: &mut Assessment) {
         let (exact, target) = self.target(point);
         result.exact_error = result.exact_error.max((density - exact).abs());
         let error = (density - target).abs();
-        if let Some(edge) = place
-            && error > result.error
-        {
-            (result.error, result.worst, result.edge) = (error, point, edge);
+        if mendable && error > result.error {
+            (result.error, result.worst) = (error, point);
         }
     }
 
@@ -309,27 +306,68 @@ impl Refinement {
         {
             return;
         }
-        let constraint = assessment.edge.filter(|_| untouched).and_then(|edge| {
-            let (a, b) = (corners[edge], corners[(edge + 1) % 3]);
-            let edge = self.triangles.get_edge_from_neighbors(a, b)?;
-            edge.is_constraint_edge()
-                .then(|| (a, b, edge.as_undirected().fix()))
-        });
-        match constraint {
-            Some((a, b, edge)) => {
+        match self.constraint_near(assessment.worst, nearest) {
+            Some((from, to, edge)) => {
                 // A vertex beside a constraint by a rounding error would leave a triangle of no area: the constraint is
                 // taken away first and led by way of the vertex after.
-                let ring = self.triangles.vertex(a).data().ring;
+                let last = self.offsets.len() - 1;
+                let ring = self.triangles.vertex(from).data().ring;
+                if ring == Some(0) || ring == Some(last) {
+                    return;
+                }
+                let place = |handle| {
+                    let position = self.triangles.vertex(handle).position();
+                    DVec2::new(position.x, position.y)
+                };
+                let (start, way) = (place(from), place(to) - place(from));
+                let share = (assessment.worst - start).dot(way) / way.length_squared();
                 self.triangles.remove_constraint_edge(edge);
-                if let Some(vertex) = self.insert(assessment.worst, ring) {
-                    self.triangles.try_add_constraint(a, vertex);
-                    self.triangles.try_add_constraint(vertex, b);
+                if let Some(vertex) = self.insert(start + way * share, ring) {
+                    self.triangles.try_add_constraint(from, vertex);
+                    self.triangles.try_add_constraint(vertex, to);
                 }
             }
             None => {
                 self.insert(assessment.worst, None);
             }
         }
+    }
+
+    /// The constraint that passes a point within `distance`, if one does.
+    fn constraint_near(
+        &self,
+        point: DVec2,
+        distance: f64,
+    ) -> Option<(
+        FixedVertexHandle,
+        FixedVertexHandle,
+        FixedUndirectedEdgeHandle,
+    )> {
+        use spade::PositionInTriangulation::{OnEdge, OnFace};
+        let faces = match self.triangles.locate(Point2::new(point.x, point.y)) {
+            OnFace(face) => vec![self.triangles.face(face)],
+            OnEdge(edge) => {
+                let edge = self.triangles.directed_edge(edge);
+                [edge.face(), edge.rev().face()]
+                    .into_iter()
+                    .filter_map(|face| face.as_inner())
+                    .collect()
+            }
+            _ => return None,
+        };
+        let constraints = faces
+            .iter()
+            .flat_map(|face| face.adjacent_edges())
+            .filter(|edge| edge.is_constraint_edge());
+        let near = constraints
+            .map(|edge| (edge.distance_2(Point2::new(point.x, point.y)), edge))
+            .filter(|(squared, _)| *squared < distance * distance);
+        let (_, edge) = near.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        Some((
+            edge.from().fix(),
+            edge.to().fix(),
+            edge.as_undirected().fix(),
+        ))
     }
 
     /// The difference at a point in the triangulation as it is now.
@@ -373,36 +411,32 @@ impl Refinement {
             ..ShadowMesh::empty()
         };
         let mut error: f64 = 0.0;
-        let faces = self.penumbra();
+        let faces = self.faces(Region::Penumbra);
         for &face in &faces {
             error = error.max(self.assess(face).1.exact_error);
         }
-        mesh.vertices = self
-            .triangles
-            .vertices()
-            .map(|vertex| {
-                let position = vertex.position();
-                MeshVertex {
-                    position: (DVec2::new(position.x, position.y) + center)
-                        .as_vec2()
-                        .to_array(),
+        // In `f32` vertices of small penumbrae may come to lie on one another: they become one, and triangles between them
+        // nothing.
+        let mut merged: HashMap<[u32; 2], u32> = HashMap::new();
+        let mut own = Vec::with_capacity(self.triangles.num_vertices());
+        for vertex in self.triangles.vertices() {
+            let at = vertex.position();
+            let position = (DVec2::new(at.x, at.y) + center).as_vec2().to_array();
+            let next = mesh.vertices.len() as u32;
+            let index = *merged.entry(position.map(f32::to_bits)).or_insert(next);
+            if index == next {
+                mesh.vertices.push(MeshVertex {
+                    position,
                     density: vertex.data().density as f32,
-                }
-            })
-            .collect();
-        for face in faces {
-            let corners = self
-                .triangles
-                .face(face)
-                .vertices()
-                .map(|vertex| vertex.fix().index() as u32);
-            let [a, b, c] =
-                corners.map(|i| DVec2::from(mesh.vertices[i as usize].position.map(f64::from)));
-            // Far from the origin `f32` may bring vertices together: what has no area left is not drawn.
-            if (b - a).perp_dot(c - a) > 0.0 {
-                mesh.indices.extend(corners);
+                });
             }
+            own.push(index);
         }
+        let corners = |face: &Face| {
+            let vertices = self.triangles.face(*face).vertices();
+            vertices.map(|vertex| own[vertex.fix().index()])
+        };
+        let mut triangles: Vec<[u32; 3]> = faces.iter().map(corners).collect();
         let loops: Vec<Vec<LoopVertex>> = self
             .umbra
             .iter()
@@ -413,7 +447,7 @@ impl Refinement {
                         let position = self.triangles.vertex(handle).position();
                         LoopVertex {
                             position: DVec2::new(position.x, position.y),
-                            index: handle.index() as u32,
+                            index: own[handle.index()],
                         }
                     })
                     .collect()
@@ -422,7 +456,13 @@ impl Refinement {
         let umbra = self.options.profile.in_place_of(1.0);
         error = error.max(if loops.is_empty() { 0.0 } else { 1.0 - umbra });
         mesh.error_levels = error * 255.0;
-        umbra::fill(&loops, umbra as f32, center, &mut mesh);
+        let position =
+            |index: u32| DVec2::from(mesh.vertices[index as usize].position.map(f64::from));
+        match umbra::fill(&loops, |_| None, position) {
+            Some(filled) => triangles.extend(filled),
+            None => triangles.extend(self.faces(Region::Umbra).iter().map(corners)),
+        }
+        mesh.indices = settle(&mesh.vertices, triangles);
         mesh
     }
 }

@@ -86,12 +86,11 @@ fn tangent_loop(circles: &[ProjectionCircle], t: f64, flatness: f64) -> Vec<DVec
         let (from, to) = (end(i, normals[i]), end(i + 1, normals[i]));
         vertices.push(from);
         let length = (to - from).length();
-        let half_chord = sqrt((1.0 - share) * (1.0 + share));
-        let (first, last) = (
-            circles[i].radius * half_chord,
-            circles[(i + 1) % count].radius * half_chord,
-        );
-        if share < 1.0 && first + last < length {
+        let reach = |i: usize| {
+            circles[i % count].radius * reach_past_corner(side * turns[i % count], share)
+        };
+        let (first, last) = (reach(i), reach(i + 1));
+        if 0.0 < share && share < 1.0 && first + last < length {
             vertices.extend([
                 from + (to - from) * (first / length),
                 to - (to - from) * (last / length),
@@ -102,6 +101,23 @@ fn tangent_loop(circles: &[ProjectionCircle], t: f64, flatness: f64) -> Vec<DVec
     vertices.dedup();
     vertices
 }
+
+/// How far along a tangent at `share` of the radius from its edge, in radii from the corner on, a disc still reaches the
+/// edge beyond the corner, which turns by `turn` towards the tangent (away from it if negative).
+fn reach_past_corner(turn: f64, share: f64) -> f64 {
+    let (sin_turn, cos_turn) = (sin(turn), cos(turn));
+    let to_corner = sqrt((1.0 - share) * (1.0 + share));
+    if turn <= 0.0 {
+        return to_corner;
+    }
+    // The disc touches the other edge's line from (1 - share cos) / sin on: that is on the edge when its foot point is.
+    let to_line = (1.0 - share * cos_turn) / sin_turn.max(SHARPEST);
+    let foot = share * sin_turn - to_line * cos_turn;
+    if foot > 0.0 { to_line } else { to_corner }
+}
+
+/// Beyond the sharpest corners' reach refinement finds its own vertices.
+const SHARPEST: f64 = 0.2;
 
 /// The unit normal of the line that touches both circles on the left (`side` 1) or right (-1) of the way from one to the
 /// other: its part along the way is the difference of the radii over the distance. Where one circle holds the other no

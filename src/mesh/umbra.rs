@@ -9,6 +9,7 @@ use lyon::tessellation::{
     BuffersBuilder, FillOptions, FillRule, FillTessellator, FillVertex, VertexBuffers,
 };
 
+use super::settle::settle;
 use super::{MeshVertex, ShadowMesh};
 
 /// A vertex of a loop: where it is and its index in the mesh.
@@ -18,9 +19,13 @@ pub(super) struct LoopVertex {
     pub(super) index: u32,
 }
 
-/// Triangles that fill the loops, by their vertices' own indices, appended to the mesh. lyon works in `f32`: a vertex
-/// that it finds where lines of the loops cross in that precision is appended with `density`.
-pub(super) fn fill(loops: &[Vec<LoopVertex>], density: f32, center: DVec2, mesh: &mut ShadowMesh) {
+/// Triangles that fill the loops, by their vertices' own indices. lyon works in `f32`: for a vertex that it finds where
+/// lines of the loops cross in that precision `extra` gives an index. Without one, or should lyon fail, there are none.
+pub(super) fn fill(
+    loops: &[Vec<LoopVertex>],
+    extra: impl FnMut([f32; 2]) -> Option<u32>,
+    position: impl Fn(u32) -> DVec2,
+) -> Option<Vec<[u32; 3]>> {
     let mut builder = Path::builder();
     let mut own: HashMap<EndpointId, u32> = HashMap::new();
     for vertex_loop in loops {
@@ -43,44 +48,32 @@ pub(super) fn fill(loops: &[Vec<LoopVertex>], density: f32, center: DVec2, mesh:
     let options = FillOptions::default()
         .with_fill_rule(FillRule::NonZero)
         .with_tolerance(1e-6);
-    let filled = FillTessellator::new().tessellate_with_ids(
-        path.id_iter(),
-        &path,
-        None,
-        &options,
-        &mut output,
-    );
-    if filled.is_err() {
-        // The loops are finite and few enough, so lyon has no reason; but a mesh without its umbra must say so.
-        mesh.error_levels = 255.0 * f64::from(density);
-        mesh.complete = false;
-        return;
-    }
-    let found: Vec<u32> = buffers
+    FillTessellator::new()
+        .tessellate_with_ids(path.id_iter(), &path, None, &options, &mut output)
+        .ok()?;
+    let mut extra = extra;
+    let found: Option<Vec<u32>> = buffers
         .vertices
         .iter()
-        .map(|&(found, position)| {
-            found.unwrap_or_else(|| {
-                let at = DVec2::from(position.map(f64::from)) + center;
-                mesh.vertices.push(MeshVertex {
-                    position: at.as_vec2().to_array(),
-                    density,
-                });
-                mesh.vertices.len() as u32 - 1
-            })
-        })
+        .map(|&(found, position)| found.or_else(|| extra(position)))
         .collect();
-    for corners in buffers.indices.chunks_exact(3) {
-        let corners = [0, 1, 2].map(|i: usize| found[corners[i] as usize]);
-        let [a, b, c] =
-            corners.map(|i| DVec2::from(mesh.vertices[i as usize].position.map(f64::from)));
-        let turn = (b - a).perp_dot(c - a);
-        if turn > 0.0 {
-            mesh.indices.extend(corners);
-        } else if turn < 0.0 {
-            mesh.indices.extend([corners[0], corners[2], corners[1]]);
+    let found = found?;
+    let mut triangles: Vec<[u32; 3]> = buffers
+        .indices
+        .chunks_exact(3)
+        .map(|corners| [0, 1, 2].map(|i: usize| found[corners[i] as usize]))
+        .collect();
+    // All of lyon's triangles turn the same way: together they tell which, where one without area cannot.
+    let turn = |corners: &[u32; 3]| {
+        let [a, b, c] = corners.map(&position);
+        (b - a).perp_dot(c - a)
+    };
+    if triangles.iter().map(turn).sum::<f64>() < 0.0 {
+        for triangle in &mut triangles {
+            triangle.swap(1, 2);
         }
     }
+    Some(triangles)
 }
 
 /// A mesh of nothing but an umbra.
@@ -106,6 +99,40 @@ pub(super) fn mesh(loops: &[Vec<DVec2>], center: DVec2) -> ShadowMesh {
                 .collect()
         })
         .collect();
-    fill(&loops, 1.0, center, &mut mesh);
+    let place = |position: DVec2| (position + center).as_vec2().to_array();
+    let positions: Vec<DVec2> = mesh
+        .vertices
+        .iter()
+        .map(|v| DVec2::from(v.position.map(f64::from)))
+        .collect();
+    let mut crossings = Vec::new();
+    let first = positions.len();
+    let triangles = fill(
+        &loops,
+        |position| {
+            crossings.push(place(DVec2::from(position.map(f64::from))));
+            Some((first + crossings.len() - 1) as u32)
+        },
+        // The crossings' triangles are few: the others tell how lyon turns.
+        |index| {
+            positions
+                .get(index as usize)
+                .copied()
+                .unwrap_or(positions[0])
+        },
+    );
+    mesh.vertices
+        .extend(crossings.into_iter().map(|position| MeshVertex {
+            position,
+            density: 1.0,
+        }));
+    match triangles {
+        Some(triangles) => mesh.indices = settle(&mesh.vertices, triangles),
+        None => {
+            // The loops are finite and few enough, so lyon has no reason; but a mesh without its umbra must say so.
+            mesh.error_levels = 255.0;
+            mesh.complete = false;
+        }
+    }
     mesh
 }

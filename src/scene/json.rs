@@ -25,7 +25,6 @@
 //! Unknown fields, and fields of another shape, are refused.
 
 use serde::Deserialize;
-use serde::de::DeserializeOwned;
 use serde_json::value::RawValue;
 
 use super::{Scene, Surface};
@@ -41,16 +40,17 @@ const MAX_LENGTH: usize = 1 << 28;
 /// A scene may not have more surfaces than this.
 const MAX_SURFACES: usize = 1 << 16;
 
+/// Each field as the piece of text that it is, so that what is wrong with one can be said with its place.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SceneFields<'a> {
-    canvas: [f32; 2],
-    background: Option<String>,
-    scale: Option<f32>,
-    light: LightFields,
-    key: Option<f32>,
-    ambient: Option<f32>,
     #[serde(borrow)]
+    canvas: &'a RawValue,
+    background: Option<&'a RawValue>,
+    scale: Option<&'a RawValue>,
+    light: &'a RawValue,
+    key: Option<&'a RawValue>,
+    ambient: Option<&'a RawValue>,
     surfaces: Vec<&'a RawValue>,
 }
 
@@ -66,7 +66,7 @@ struct LightFields {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SurfaceFields {
-    shape: ShapeName,
+    shape: String,
     elevation: f32,
     opacity: Option<f32>,
     fill: Option<String>,
@@ -85,24 +85,7 @@ struct SurfaceFields {
     points: Option<Vec<[f32; 2]>>,
     rings: Option<Vec<Vec<[f32; 2]>>>,
     d: Option<String>,
-    fill_rule: Option<FillRuleName>,
-}
-
-#[derive(Deserialize, Clone, Copy)]
-#[serde(rename_all = "lowercase")]
-enum ShapeName {
-    Rrect,
-    Circle,
-    Ellipse,
-    Polygon,
-    Path,
-}
-
-#[derive(Deserialize, Clone, Copy)]
-#[serde(rename_all = "lowercase")]
-enum FillRuleName {
-    NonZero,
-    EvenOdd,
+    fill_rule: Option<String>,
 }
 
 #[derive(Deserialize, Clone, Copy)]
@@ -118,86 +101,88 @@ impl Scene {
     /// # Errors
     /// [`Error::Scene`] with line, column and field.
     pub fn from_json(text: &str) -> Result<Self> {
-        let whole = Place { text, offset: 0 };
+        let whole = Part { text, part: text };
         if text.len() > MAX_LENGTH {
-            return Err(whole.refuse(
-                0,
-                "scene",
-                format!("{} bytes: at most {MAX_LENGTH} are read", text.len()),
-            ));
+            let reason = format!("{} bytes: at most {MAX_LENGTH} are read", text.len());
+            return Err(whole.refuse("scene", &reason));
         }
-        let fields: SceneFields<'_> = whole.read_borrowed("scene")?;
-        let count = fields.surfaces.len();
-        if count > MAX_SURFACES {
-            return Err(whole.refuse(
-                0,
-                "surfaces",
-                format!("{count} surfaces: at most {MAX_SURFACES} are read"),
-            ));
-        }
-        let at = |key: &str| text.find(&format!("\"{key}\"")).unwrap_or(0);
-        let refuse = |key: &str, error: &dyn core::fmt::Display| {
-            whole.refuse(at(key), key, error.to_string())
+        let fields: SceneFields<'_> = whole.read_object("scene")?;
+        let part = |raw: &'_ RawValue| Part {
+            text,
+            part: part_of(text, raw),
         };
 
-        let LightFields { x, y, z, radius } = fields.light;
-        let light = Light::new([x, y, z], radius).map_err(|error| refuse("light", &error))?;
-        let mut scene =
-            Self::new(fields.canvas, light).map_err(|error| refuse("canvas", &error))?;
-        if let Some(scale) = fields.scale {
+        let light = part(fields.light);
+        let LightFields { x, y, z, radius } = light.read_object("light")?;
+        let light = Light::new([x, y, z], radius).map_err(|error| light.refuse("light", &error))?;
+        let canvas = part(fields.canvas);
+        let size = canvas.read("canvas")?;
+        let mut scene = Self::new(size, light).map_err(|error| canvas.refuse("canvas", &error))?;
+        if let Some(scale) = fields.scale.map(part) {
+            let value = scale.read("scale")?;
             scene = scene
-                .with_scale(scale)
-                .map_err(|error| refuse("scale", &error))?;
+                .with_scale(value)
+                .map_err(|error| scale.refuse("scale", &error))?;
         }
-        if let Some(background) = fields.background {
-            let color: Color = background
+        if let Some(background) = fields.background.map(part) {
+            let value: String = background.read("background")?;
+            let color: Color = value
                 .parse()
-                .map_err(|error| refuse("background", &error))?;
+                .map_err(|error| background.refuse("background", &error))?;
             scene = scene
                 .with_background(color)
-                .map_err(|error| refuse("background", &error))?;
+                .map_err(|error| background.refuse("background", &error))?;
         }
-        let default = Tone::default();
-        let tone = Tone::new(
-            fields.key.unwrap_or(default.key()),
-            fields.ambient.unwrap_or(default.ambient()),
-        );
-        scene = scene.with_tone(tone.map_err(|error| {
-            refuse(
-                if fields.key.is_some() {
-                    "key"
-                } else {
-                    "ambient"
-                },
-                &error,
-            )
-        })?);
-        for (index, raw) in fields.surfaces.iter().enumerate() {
-            let place = Place {
-                text,
-                offset: raw.get().as_ptr() as usize - text.as_ptr() as usize,
-            };
+        let mut tone = Tone::default();
+        if let Some(key) = fields.key.map(part) {
+            let value = key.read("key")?;
+            tone = Tone::new(value, tone.ambient()).map_err(|error| key.refuse("key", &error))?;
+        }
+        if let Some(ambient) = fields.ambient.map(part) {
+            let value = ambient.read("ambient")?;
+            tone =
+                Tone::new(tone.key(), value).map_err(|error| ambient.refuse("ambient", &error))?;
+        }
+        scene = scene.with_tone(tone);
+        let count = fields.surfaces.len();
+        if count > MAX_SURFACES {
+            let reason = format!("{count} surfaces: at most {MAX_SURFACES} are read");
+            return Err(whole.refuse("surfaces", &reason));
+        }
+        for (index, raw) in fields.surfaces.into_iter().enumerate() {
             let field = format!("surfaces[{index}]");
-            let surface = place.read_part::<SurfaceFields>(raw.get(), &field)?;
-            let surface = surface
-                .build()
-                .and_then(|surface| scene.push(surface).map_err(|error| error.to_string()));
-            surface.map_err(|reason| place.refuse(0, &field, reason))?;
+            let surface = part(raw);
+            let built = surface.read_object::<SurfaceFields>(&field)?.build();
+            built
+                .and_then(|built| scene.push(built).map_err(|error| error.to_string()))
+                .map_err(|reason| surface.refuse(&field, &reason))?;
         }
         Ok(scene)
     }
 }
 
-/// Where in a file a part of it begins.
-struct Place<'a> {
+/// A piece of a file's text.
+#[derive(Clone, Copy)]
+struct Part<'a> {
     text: &'a str,
-    offset: usize,
+    part: &'a str,
 }
 
-impl<'a> Place<'a> {
-    /// An error at `offset` bytes from the place.
-    fn refuse(&self, offset: usize, field: &str, reason: String) -> Error {
-        let before = &self.text.as_bytes()[..self.offset + offset];
+/// The piece of `text` that a raw value was read from.
+fn part_of<'a>(text: &'a str, raw: &RawValue) -> &'a str {
+    let offset = raw.get().as_ptr() as usize - text.as_ptr() as usize;
+    &text[offset..offset + raw.get().len()]
+}
+
+impl<'a> Part<'a> {
+    /// An error at the part's beginning.
+    fn refuse(&self, field: &str, reason: &dyn core::fmt::Display) -> Error {
+        self.refuse_at(0, field.to_owned(), reason.to_string())
+    }
+
+    fn refuse_at(&self, offset: usize, field: String, reason: String) -> Error {
+        let place = self.part.as_ptr() as usize - self.text.as_ptr() as usize + offset;
+        let before = &self.text.as_bytes()[..place];
         let line_start = before
             .iter()
             .rposition(|&byte| byte == b'\n')
@@ -205,57 +190,53 @@ impl<'a> Place<'a> {
         Error::Scene {
             line: before.iter().filter(|&&byte| byte == b'\n').count() + 1,
             column: before.len() - line_start + 1,
-            field: field.to_owned(),
+            field,
             reason,
         }
     }
 
-    /// Reads the whole text.
-    fn read_borrowed<T: Deserialize<'a>>(&self, field: &str) -> Result<T> {
-        let mut reader = serde_json::Deserializer::from_str(self.text);
-        let value = serde_path_to_error::deserialize(&mut reader)
-            .map_err(|error| self.misread(&error, self.text, field))?;
+    /// Reads an object: a list of values without their names would be taken for one.
+    fn read_object<T: Deserialize<'a>>(&self, field: &str) -> Result<T> {
+        if self.part.trim_start().starts_with('[') {
+            return Err(self.refuse(field, &"give an object with named fields, not a list"));
+        }
+        self.read(field)
+    }
+
+    fn read<T: Deserialize<'a>>(&self, field: &str) -> Result<T> {
+        let mut reader = serde_json::Deserializer::from_str(self.part);
+        let value = serde_path_to_error::deserialize(&mut reader).map_err(|error| {
+            let path = error.path().to_string();
+            let field = if path == "." {
+                field.to_owned()
+            } else {
+                format!("{field}.{path}")
+            };
+            self.json_error(error.inner(), field)
+        })?;
         reader
             .end()
-            .map_err(|error| self.json_error(&error, self.text, field.to_owned()))?;
+            .map_err(|error| self.json_error(&error, field.to_owned()))?;
         Ok(value)
     }
 
-    /// Reads `part`, which begins at the place.
-    fn read_part<T: DeserializeOwned>(&self, part: &str, field: &str) -> Result<T> {
-        let mut reader = serde_json::Deserializer::from_str(part);
-        serde_path_to_error::deserialize(&mut reader)
-            .map_err(|error| self.misread(&error, part, field))
-    }
-
-    fn misread(
-        &self,
-        error: &serde_path_to_error::Error<serde_json::Error>,
-        part: &str,
-        field: &str,
-    ) -> Error {
-        let path = error.path().to_string();
-        let full = if path == "." {
-            field.to_owned()
-        } else {
-            format!("{field}.{path}")
-        };
-        self.json_error(error.inner(), part, full)
-    }
-
-    fn json_error(&self, error: &serde_json::Error, part: &str, field: String) -> Error {
+    fn json_error(&self, error: &serde_json::Error, field: String) -> Error {
         // serde_json counts lines from 1 and columns in bytes, and ends its message with both.
-        let line_start: usize = part
-            .split_inclusive('\n')
+        let lines = self.part.split_inclusive('\n');
+        let line_start: usize = lines
             .take(error.line().saturating_sub(1))
             .map(str::len)
             .sum();
-        let offset = (line_start + error.column().saturating_sub(1)).min(part.len());
+        let offset = (line_start + error.column().saturating_sub(1)).min(self.part.len());
         let message = error.to_string();
         let reason = message
             .rsplit_once(" at line ")
             .map_or(message.as_str(), |(reason, _)| reason);
-        self.refuse(offset, &field, reason.to_owned())
+        self.refuse_at(
+            offset,
+            field,
+            reason.replace("struct SurfaceFields", "an object"),
+        )
     }
 }
 
@@ -280,12 +261,17 @@ impl SurfaceFields {
         let need = |name: &str, value: Option<f32>| {
             value.ok_or_else(|| format!("this shape needs the field `{name}`"))
         };
-        let rule = match self.fill_rule {
-            None | Some(FillRuleName::NonZero) => FillRule::NonZero,
-            Some(FillRuleName::EvenOdd) => FillRule::EvenOdd,
+        let rule = match self.fill_rule.as_deref() {
+            None | Some("nonzero") => FillRule::NonZero,
+            Some("evenodd") => FillRule::EvenOdd,
+            Some(other) => {
+                return Err(format!(
+                    "fill_rule {other:?} is unknown: give \"nonzero\" or \"evenodd\""
+                ));
+            }
         };
-        let shape = match self.shape {
-            ShapeName::Rrect => {
+        let shape = match self.shape.as_str() {
+            "rrect" => {
                 let radii = match (self.radius, self.radii) {
                     (Some(_), Some(_)) => {
                         return Err("`radius` and `radii` exclude each other: give one".to_owned());
@@ -299,25 +285,33 @@ impl SurfaceFields {
                 let (x, y) = (need("x", self.x)?, need("y", self.y)?);
                 Shape::rounded_rect(x, y, need("w", self.w)?, need("h", self.h)?, radii)
             }
-            ShapeName::Circle => Shape::circle(
+            "circle" => Shape::circle(
                 [need("cx", self.cx)?, need("cy", self.cy)?],
                 need("r", self.r)?,
             ),
-            ShapeName::Ellipse => Shape::ellipse(
+            "ellipse" => Shape::ellipse(
                 [need("cx", self.cx)?, need("cy", self.cy)?],
                 [need("rx", self.rx)?, need("ry", self.ry)?],
             ),
-            ShapeName::Polygon => match (&self.points, &self.rings) {
+            "polygon" => match (&self.points, &self.rings) {
                 (Some(points), None) => Shape::polygon(&[points], rule),
                 (None, Some(rings)) => Shape::polygon(rings, rule),
                 _ => return Err("a polygon needs `points` or `rings`, one of them".to_owned()),
             },
-            ShapeName::Path => {
+            "path" => {
                 let data = self.d.as_deref().ok_or("a path needs the field `d`")?;
                 Path::from_svg(data).and_then(|path| Shape::path(&path, rule))
             }
+            _ => return Err(self.unknown_shape()),
         };
         shape.map_err(|error| error.to_string())
+    }
+
+    fn unknown_shape(&self) -> String {
+        format!(
+            "shape {:?} is unknown: give rrect, circle, ellipse, polygon or path",
+            self.shape
+        )
     }
 
     /// A field that another shape has says that something was meant that will not be drawn.
@@ -339,12 +333,13 @@ impl SurfaceFields {
             ("d", self.d.is_some()),
             ("fill_rule", self.fill_rule.is_some()),
         ];
-        let own: &[&str] = match self.shape {
-            ShapeName::Rrect => &["x", "y", "w", "h", "radius", "radii"],
-            ShapeName::Circle => &["cx", "cy", "r"],
-            ShapeName::Ellipse => &["cx", "cy", "rx", "ry"],
-            ShapeName::Polygon => &["points", "rings", "fill_rule"],
-            ShapeName::Path => &["d", "fill_rule"],
+        let own: &[&str] = match self.shape.as_str() {
+            "rrect" => &["x", "y", "w", "h", "radius", "radii"],
+            "circle" => &["cx", "cy", "r"],
+            "ellipse" => &["cx", "cy", "rx", "ry"],
+            "polygon" => &["points", "rings", "fill_rule"],
+            "path" => &["d", "fill_rule"],
+            _ => return Err(self.unknown_shape()),
         };
         match given
             .iter()

@@ -58,6 +58,5 @@ pub(crate) fn run(
         "median_ns": times[times.len() / 2],
         "max_density": max,
     });
-    println!("{line}");
-    Ok(())
+    output::print(&format!("{line}\n"))
 }

@@ -1,14 +1,17 @@
 //! `explain`: how each surface's shadow on the ground is projected and drawn.
 
+use std::fmt::Write;
 use std::path::Path;
 
 use penumbral::plan::{Target, choose};
 use penumbral::{Bounds, Tolerance};
 
-use crate::{Failure, read_scene};
+use crate::{Failure, output, read_scene};
 
 pub(crate) fn run(path: &Path) -> Result<(), Failure> {
     let scene = read_scene(path)?;
+    let mut text = String::new();
+    // Writing to a string cannot fail.
     for (index, surface) in scene.surfaces().iter().enumerate() {
         let light = scene.light();
         let shadow = light
@@ -18,29 +21,35 @@ pub(crate) fn run(path: &Path) -> Result<(), Failure> {
             .name()
             .map(|name| format!(" {name:?}"))
             .unwrap_or_default();
-        println!("surfaces[{index}]{name}, elevation {}", surface.elevation());
+        let _ = writeln!(
+            text,
+            "surfaces[{index}]{name}, elevation {}",
+            surface.elevation()
+        );
         let Some(bounds) = shadow.bounds() else {
-            println!("  no shadow on the ground");
+            let _ = writeln!(text, "  no shadow on the ground");
             continue;
         };
         let scale = light
             .scale(surface.elevation(), 0.0)
             .map_err(|error| error.to_string())?;
-        println!("  scale   {scale:.4}");
-        println!(
+        let _ = writeln!(text, "  scale   {scale:.4}");
+        let _ = writeln!(
+            text,
             "  radius  {:.3} units, {:.3} px",
             shadow.radius(),
             shadow.radius() * f64::from(scene.scale())
         );
-        match shadow.umbra_bounds() {
-            Some(umbra) => println!("  umbra   {}", describe(&umbra)),
-            None => println!("  umbra   none"),
-        }
-        println!("  bounds  {}", describe(&bounds));
+        let umbra = match shadow.umbra_bounds() {
+            Some(umbra) => describe(&umbra),
+            None => "none".to_owned(),
+        };
+        let _ = writeln!(text, "  umbra   {umbra}");
+        let _ = writeln!(text, "  bounds  {}", describe(&bounds));
         let choice = choose(&shadow, Tolerance::default(), Target::Pixels);
-        println!("  method  {}: {}", choice.method, choice.why);
+        let _ = writeln!(text, "  method  {}: {}", choice.method, choice.why);
     }
-    Ok(())
+    output::print(&text)
 }
 
 fn describe(bounds: &Bounds) -> String {

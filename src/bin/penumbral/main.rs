@@ -121,7 +121,7 @@ fn main() -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            eprintln!("penumbral: {failure}");
+            output::complain(&failure);
             ExitCode::from(1)
         }
     }

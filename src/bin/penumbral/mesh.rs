@@ -42,10 +42,10 @@ pub(crate) fn run(path: &Path, file: &Path, tolerance: Tolerance) -> Result<(), 
         .enumerate()
         .filter(|(_, mesh)| !mesh.is_complete())
     {
-        eprintln!(
-            "penumbral: surfaces[{index}]: the mesh reached its limit of vertices with an error of {:.2} levels",
+        output::complain(&format!(
+            "surfaces[{index}]: the mesh reached its limit of vertices with an error of {:.2} levels",
             mesh.error_levels()
-        );
+        ));
     }
     Ok(())
 }

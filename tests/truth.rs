@@ -1,0 +1,196 @@
+//! `exact` against maps of an independent closed form, and against plain counting.
+
+#![expect(
+    clippy::unwrap_used,
+    reason = "a fixture that cannot be read fails the test"
+)]
+
+use std::fs::{self, File};
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+
+use penumbral::plan::Method;
+use penumbral::{DensityMap, Grid, Light, Scene, Scratch, Shape, Tolerance};
+
+fn truth_scenes() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/truth");
+    let entries = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path());
+    let mut scenes: Vec<PathBuf> = entries
+        .filter(|path| path.extension().is_some_and(|e| e == "json"))
+        .collect();
+    scenes.sort();
+    scenes
+}
+
+/// A map's densities, from 16-bit grey.
+fn read_map(path: &Path) -> Vec<f64> {
+    let mut reader = png::Decoder::new(BufReader::new(File::open(path).unwrap()))
+        .read_info()
+        .unwrap();
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut bytes).unwrap();
+    assert_eq!(
+        (info.color_type, info.bit_depth),
+        (png::ColorType::Grayscale, png::BitDepth::Sixteen)
+    );
+    let grey = |pair: &[u8]| f64::from(u16::from_be_bytes([pair[0], pair[1]])) / 65535.0;
+    bytes.chunks_exact(2).map(grey).collect()
+}
+
+/// How far `exact` may be from a map, in levels.
+fn allowed(name: &str, least_radius: f64) -> f64 {
+    match name {
+        // Casters of two heights, both partial on some pixels: their transmissions multiply, the map has the union of
+        // what they hide of the disc.
+        "two-heights" => 3.6,
+        // The map's pixels are averages of 8 x 8 or 16 x 16 densities.
+        _ if least_radius < 3.0 => 1.0,
+        // Both round to 16 bits and flatten curves.
+        _ => 0.1,
+    }
+}
+
+#[test]
+fn maps_of_an_independent_closed_form_agree() {
+    let scenes = truth_scenes();
+    assert_eq!(scenes.len(), 20);
+    let (mut map, mut scratch) = (DensityMap::default(), Scratch::new());
+    for path in scenes {
+        let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
+        let scene = Scene::from_json(&fs::read_to_string(&path).unwrap()).unwrap();
+        let truth = read_map(&path.with_extension("png"));
+        let cast = |surface: &penumbral::Surface| {
+            scene
+                .light()
+                .cast(surface.shape(), surface.elevation(), 0.0)
+                .unwrap()
+                .radius()
+        };
+        let least = scene.surfaces().iter().map(cast).fold(f64::MAX, f64::min);
+        scene
+            .ground_density(
+                Some(Method::Exact),
+                Tolerance::ONE_LEVEL,
+                false,
+                &mut map,
+                &mut scratch,
+            )
+            .unwrap();
+        assert_eq!(map.densities().len(), truth.len(), "{name}");
+        let error = |(got, truth): (&f32, &f64)| (f64::from(*got) - truth).abs() * 255.0;
+        let errors: Vec<f64> = map.densities().iter().zip(&truth).map(error).collect();
+        let worst = errors.iter().copied().fold(0.0, f64::max);
+        let rms = (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt();
+        println!("{name:18} r {least:7.2} px: worst {worst:.4}, rms {rms:.4} levels");
+        assert!(worst <= allowed(&name, least), "{name}: {worst} levels");
+    }
+}
+
+/// The part of a pixel inside a disc, by counting.
+fn counted(x: u32, y: u32, center: [f64; 2], radius: f64) -> f64 {
+    const SIDE: u32 = 256;
+    let inside = |i: u32| {
+        let (column, row) = (i % SIDE, i / SIDE);
+        let at =
+            |pixel: u32, step: u32| f64::from(pixel) + (f64::from(step) + 0.5) / f64::from(SIDE);
+        let (dx, dy) = (at(x, column) - center[0], at(y, row) - center[1]);
+        dx * dx + dy * dy <= radius * radius
+    };
+    f64::from((0..SIDE * SIDE).filter(|&i| inside(i)).count() as u32) / f64::from(SIDE * SIDE)
+}
+
+#[test]
+fn hard_and_nearly_hard_edges_are_coverage() {
+    let (center, radius) = ([12.3, 11.6], 8.7);
+    let circle = Shape::circle(center.map(|v| v as f32), radius as f32).unwrap();
+    let grid = Grid::new([0.0, 0.0], [24, 24], 1.0).unwrap();
+    for penumbra in [0.0, 0.02] {
+        let light = Light::directional([0.0, 0.0], penumbra).unwrap();
+        let shadow = light.cast(&circle, 1.0, 0.0).unwrap();
+        assert!((shadow.radius() - f64::from(penumbra)).abs() < 1e-12);
+        let mut mask = vec![0; 24 * 24];
+        shadow
+            .fill_a8(&grid, &mut mask, &mut Scratch::new())
+            .unwrap();
+        for y in 0..24 {
+            for x in 0..24 {
+                let got = f64::from(mask[(y * 24 + x) as usize]);
+                let error = (got - counted(x, y, center, radius) * 255.0).abs();
+                // Half a level from rounding, the rest from counting and from the penumbra.
+                assert!(
+                    error < 0.75,
+                    "pixel {x}, {y} at r {penumbra}: {error} levels"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn moved_by_whole_pixels_a_picture_keeps_its_bits() {
+    let light = Light::directional([0.0, 1.0], 1.5).unwrap();
+    let draw = |dx: f32, dy: f32, origin: [f32; 2]| {
+        let card =
+            Shape::rounded_rect(10.25 + dx, 9.5 + dy, 20.0, 14.0, [3.0, 5.0, 0.0, 7.0]).unwrap();
+        let grid = Grid::new(origin, [40, 40], 1.0).unwrap();
+        let mut mask = vec![0; 1600];
+        light
+            .cast(&card, 3.0, 0.0)
+            .unwrap()
+            .fill_a8(&grid, &mut mask, &mut Scratch::new())
+            .unwrap();
+        mask
+    };
+    let still = draw(0.0, 0.0, [0.0, 0.0]);
+    assert!(still.contains(&255));
+    assert_eq!(still, draw(128.0, 1024.0, [128.0, 1024.0]));
+    assert_ne!(still, draw(0.5, 0.0, [0.0, 0.0]));
+}
+
+#[test]
+fn rows_beyond_the_grid_are_left_alone() {
+    let light = Light::flutter();
+    let shadow = light
+        .cast(&Shape::rect(-50.0, -50.0, 200.0, 200.0).unwrap(), 1.0, 0.0)
+        .unwrap();
+    let grid = Grid::new([0.0, 0.0], [4, 3], 1.0)
+        .unwrap()
+        .with_stride(6)
+        .unwrap();
+    let mut mask = vec![7; 18];
+    shadow
+        .fill_a8(&grid, &mut mask, &mut Scratch::new())
+        .unwrap();
+    assert_eq!(mask, [[255, 255, 255, 255, 7, 7]; 3].concat());
+    assert!(
+        shadow
+            .fill_a8(&grid, &mut mask[..15], &mut Scratch::new())
+            .is_err()
+    );
+}
+
+#[test]
+fn pixels_per_unit_only_change_the_resolution() {
+    // The same picture at twice the scale of a scene half as large.
+    let draw = |factor: f32| {
+        let light = Light::new([20.0 / factor, 0.0, 600.0 / factor], 800.0 / factor).unwrap();
+        let card = Shape::rounded_rect(
+            10.0 / factor,
+            12.0 / factor,
+            20.0 / factor,
+            14.0 / factor,
+            4.0 / factor,
+        )
+        .unwrap();
+        let shadow = light.cast(&card, 4.0 / factor, 0.0).unwrap();
+        let mut mask = vec![0; 1600];
+        let grid = Grid::new([0.0, 0.0], [40, 40], factor).unwrap();
+        shadow
+            .fill_a8(&grid, &mut mask, &mut Scratch::new())
+            .unwrap();
+        mask
+    };
+    assert_eq!(draw(1.0), draw(2.0));
+}
