@@ -109,3 +109,8 @@ pub use scratch::Scratch;
 pub use shadow::{Bounds, Shadow};
 pub use shape::{CornerRadii, Shape};
 pub use tone::{Color, ParseColorError, Tone};
+
+/// The README's code, compiled with the documentation's.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;

@@ -118,9 +118,11 @@ fn hard_and_nearly_hard_edges_are_coverage() {
             for x in 0..24 {
                 let got = f64::from(mask[(y * 24 + x) as usize]);
                 let error = (got - counted(x, y, center, radius) * 255.0).abs();
-                // Half a level from rounding, the rest from counting and from the penumbra.
+                // Half a level from rounding, a fifth from counting, and what a penumbra carries over a pixel's side: the
+                // profile's mass beyond its edge, 0.106 of the radius.
+                let allowed = 0.7 + 0.11 * f64::from(penumbra) * 255.0;
                 assert!(
-                    error < 0.75,
+                    error < allowed,
                     "pixel {x}, {y} at r {penumbra}: {error} levels"
                 );
             }

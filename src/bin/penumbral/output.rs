@@ -44,9 +44,9 @@ pub(crate) fn complain(message: &str) {
     let mut line = String::from("penumbral: ");
     for c in message.chars() {
         if c.is_control() {
-            line.extend(c.escape_default())
+            line.extend(c.escape_default());
         } else {
-            line.push(c)
+            line.push(c);
         }
     }
     line.push('\n');
