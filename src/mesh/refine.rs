@@ -296,29 +296,20 @@ impl Refinement {
         if !untouched && self.error_at(assessment.worst) <= limit {
             return;
         }
-        let at = corners.map(|corner| {
-            let position = self.triangles.vertex(corner).position();
+        let place = |handle| {
+            let position = self.triangles.vertex(handle).position();
             DVec2::new(position.x, position.y)
-        });
-        if at
-            .iter()
-            .any(|corner| (*corner - assessment.worst).length() < nearest)
-        {
-            return;
-        }
+        };
+        let is_near = |handle| (place(handle) - assessment.worst).length() < nearest;
         match self.constraint_near(assessment.worst, nearest) {
             Some((from, to, edge)) => {
                 // A vertex beside a constraint by a rounding error would leave a triangle of no area: the constraint is
                 // taken away first and led by way of the vertex after.
                 let last = self.offsets.len() - 1;
                 let ring = self.triangles.vertex(from).data().ring;
-                if ring == Some(0) || ring == Some(last) {
+                if ring == Some(0) || ring == Some(last) || is_near(from) || is_near(to) {
                     return;
                 }
-                let place = |handle| {
-                    let position = self.triangles.vertex(handle).position();
-                    DVec2::new(position.x, position.y)
-                };
                 let (start, way) = (place(from), place(to) - place(from));
                 let share = (assessment.worst - start).dot(way) / way.length_squared();
                 self.triangles.remove_constraint_edge(edge);
@@ -327,6 +318,7 @@ impl Refinement {
                     self.triangles.try_add_constraint(vertex, to);
                 }
             }
+            None if corners.into_iter().any(is_near) => {}
             None => {
                 self.insert(assessment.worst, None);
             }
