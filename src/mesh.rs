@@ -10,6 +10,7 @@ mod export;
 mod gouraud;
 mod profile;
 mod refine;
+mod regions;
 mod settle;
 mod tangents;
 mod umbra;

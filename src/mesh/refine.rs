@@ -7,19 +7,15 @@
 use std::collections::HashMap;
 
 use glam::DVec2;
-use spade::handles::{FixedFaceHandle, FixedUndirectedEdgeHandle, FixedVertexHandle, InnerTag};
-use spade::{
-    ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation, mitigate_underflow,
-};
+use spade::handles::{FixedUndirectedEdgeHandle, FixedVertexHandle};
+use spade::{HasPosition, Point2, Triangulation, mitigate_underflow};
 
 use super::profile::Profile;
+use super::regions::{Face, Region, Triangles, Vertex, faces};
 use super::settle::settle;
 use super::umbra::{self, LoopVertex};
 use super::{MeshOptions, MeshVertex, Ring, ShadowMesh};
 use crate::density::Field;
-
-type Triangles = ConstrainedDelaunayTriangulation<Vertex>;
-type Face = FixedFaceHandle<InnerTag>;
 
 /// Rounds of refinement at most. Each halves the larger triangles: the finest tolerance takes about 12.
 const ROUNDS: usize = 40;
@@ -45,30 +41,6 @@ const INNER_SAMPLES: [[f64; 3]; 10] = [
     [0.1, 0.8, 0.1],
     [0.1, 0.1, 0.8],
 ];
-
-#[derive(Debug, Clone, Copy)]
-struct Vertex {
-    position: Point2<f64>,
-    density: f64,
-    /// The ring it was made for: 0 is the outer edge.
-    ring: Option<usize>,
-}
-
-impl HasPosition for Vertex {
-    type Scalar = f64;
-
-    fn position(&self) -> Point2<f64> {
-        self.position
-    }
-}
-
-/// On which side of the penumbra's two edges a face lies.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Region {
-    Outside,
-    Penumbra,
-    Umbra,
-}
 
 /// What sampling found out about a triangle.
 #[derive(Debug, Clone, Copy)]
@@ -182,51 +154,8 @@ impl Refinement {
             .ok()
     }
 
-    /// The faces of a region, found by walking in from outside and minding the penumbra's two edges.
     fn faces(&self, wanted: Region) -> Vec<Face> {
-        let last = self.offsets.len() - 1;
-        let mut regions: Vec<Option<Region>> = vec![None; self.triangles.num_all_faces()];
-        let mut open = vec![self.triangles.outer_face().fix()];
-        regions[open[0].index()] = Some(Region::Outside);
-        let mut found = Vec::new();
-        while let Some(face) = open.pop() {
-            let Some(region) = regions[face.index()] else {
-                continue;
-            };
-            let face = self.triangles.face(face);
-            if let Some(inner) = face.as_inner().filter(|_| region == wanted) {
-                found.push(inner.fix());
-            }
-            let edges: Vec<_> = match face.as_inner() {
-                Some(inner) => inner.adjacent_edges().to_vec(),
-                None => self.triangles.convex_hull().collect(),
-            };
-            for edge in edges {
-                let next = edge.rev().face().fix();
-                if regions[next.index()].is_some() {
-                    continue;
-                }
-                let ring = edge
-                    .from()
-                    .data()
-                    .ring
-                    .filter(|&ring| Some(ring) == edge.to().data().ring);
-                let crossed = ring.filter(|_| edge.is_constraint_edge());
-                regions[next.index()] = Some(match (region, crossed) {
-                    (Region::Outside, Some(0)) | (Region::Umbra, Some(_))
-                        if crossed == Some(0) || crossed == Some(last) =>
-                    {
-                        Region::Penumbra
-                    }
-                    (Region::Penumbra, Some(0)) => Region::Outside,
-                    (Region::Penumbra, Some(ring)) if ring == last => Region::Umbra,
-                    _ => region,
-                });
-                open.push(next);
-            }
-        }
-        found.sort_by_key(|face| face.index());
-        found
+        faces(&self.triangles, self.offsets.len() - 1, wanted)
     }
 
     fn assess(&mut self, face: Face) -> ([usize; 3], Assessment) {
