@@ -8,7 +8,7 @@ use std::collections::HashMap;
 
 use glam::DVec2;
 use spade::handles::{FixedUndirectedEdgeHandle, FixedVertexHandle};
-use spade::{HasPosition, Point2, Triangulation, mitigate_underflow};
+use spade::{Point2, Triangulation, mitigate_underflow};
 
 use super::profile::Profile;
 use super::regions::{Face, Region, Triangles, Vertex, faces};
