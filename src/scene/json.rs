@@ -1,28 +1,4 @@
-//! The JSON scene format.
-//!
-//! ```json
-//! {
-//!   "canvas": [360, 640], "background": "#fafafa", "scale": 1,
-//!   "light": {"x": 180, "y": 0, "z": 600, "radius": 800}, "key": 0.19, "ambient": 0.039,
-//!   "surfaces": [
-//!     {"shape": "rrect", "x": 16, "y": 80, "w": 328, "h": 120, "radius": 12, "elevation": 4,
-//!      "opacity": 1, "fill": "#fff", "name": "card"}
-//!   ]
-//! }
-//! ```
-//!
-//! Only `canvas`, `light` and `surfaces` are required; the rest has the values shown. A surface needs `shape` and
-//! `elevation`, and by its shape:
-//!
-//! | shape | fields |
-//! |---|---|
-//! | `rrect` | `x`, `y`, `w`, `h`, and `radius` or `radii`: four from the top left clockwise, each a number or a pair |
-//! | `circle` | `cx`, `cy`, `r` |
-//! | `ellipse` | `cx`, `cy`, `rx`, `ry` |
-//! | `polygon` | `points` or `rings` of [x, y], and `fill_rule`: `nonzero` (the default) or `evenodd` |
-//! | `path` | `d`, SVG path data, and `fill_rule` |
-//!
-//! Unknown fields, and fields of another shape, are refused.
+//! Reading the JSON scene format.
 
 use serde::Deserialize;
 use serde_json::value::RawValue;
@@ -96,7 +72,31 @@ enum RadiusFields {
 }
 
 impl Scene {
-    /// Reads a scene from its JSON format, which `src/scene/json.rs` and the README describe.
+    /// Reads a scene from its JSON format:
+    ///
+    /// ```json
+    /// {
+    ///   "canvas": [360, 640], "background": "#fafafa", "scale": 1,
+    ///   "light": {"x": 180, "y": 0, "z": 600, "radius": 800}, "key": 0.19, "ambient": 0.039,
+    ///   "surfaces": [
+    ///     {"shape": "rrect", "x": 16, "y": 80, "w": 328, "h": 120, "radius": 12, "elevation": 4,
+    ///      "opacity": 1, "fill": "#fff", "name": "card"}
+    ///   ]
+    /// }
+    /// ```
+    ///
+    /// Only `canvas`, `light` and `surfaces` are required; the rest has the values shown. A surface needs `shape` and
+    /// `elevation`, and by its shape:
+    ///
+    /// | shape | fields |
+    /// |---|---|
+    /// | `rrect` | `x`, `y`, `w`, `h`, and `radius` or `radii`: four from the top left clockwise, each a number or a pair |
+    /// | `circle` | `cx`, `cy`, `r` |
+    /// | `ellipse` | `cx`, `cy`, `rx`, `ry` |
+    /// | `polygon` | `points` or `rings` of [x, y], and `fill_rule`: `nonzero` (the default) or `evenodd` |
+    /// | `path` | `d`, SVG path data, and `fill_rule` |
+    ///
+    /// Unknown fields, and fields of another shape, are refused.
     ///
     /// # Errors
     /// [`Error::Scene`] with line, column and field.
