@@ -54,7 +54,7 @@ impl Grid {
     /// The same grid in a buffer whose rows begin `stride` pixels apart.
     ///
     /// # Errors
-    /// A stride below the width or above 2^31.
+    /// A stride below the width, above 2^31, or so large that the buffer could not be addressed.
     pub fn with_stride(mut self, stride: usize) -> Result<Self> {
         error::within(
             "grid.stride",
@@ -62,6 +62,14 @@ impl Grid {
             f64::from(self.width),
             2_147_483_648.0,
         )?;
+        if stride.checked_mul(self.height as usize).is_none() {
+            return Err(Error::OutOfRange {
+                field: "grid.stride",
+                value: stride as f64,
+                min: f64::from(self.width),
+                max: usize::MAX as f64 / f64::from(self.height),
+            });
+        }
         self.stride = stride;
         Ok(self)
     }

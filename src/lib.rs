@@ -59,7 +59,9 @@
 //! | `scene.rs`, `scene/json.rs` | [`Scene`], [`Surface`], and their JSON format |
 //! | `tone.rs` | [`Tone`], [`Color`]: how density becomes paint |
 //! | `compose.rs`, `compose/` | who casts on whom; pictures and SVG |
+//! | `svg.rs` | writing SVG |
 //! | `grid.rs`, `scratch.rs`, `error.rs` | [`Grid`], [`Scratch`], [`Error`] |
+//! | `bin/penumbral` | the command line |
 //!
 //! # Features
 //!

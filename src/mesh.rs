@@ -80,7 +80,7 @@ pub struct MeshOptions {
 }
 
 impl MeshOptions {
-    /// Within `tolerance` of the exact density, with at most 65,536 vertices.
+    /// Within `tolerance` of the exact density, with at most 65,536 vertices, or as many as the outline's own corners need.
     #[must_use]
     pub fn new(tolerance: Tolerance) -> Self {
         Self {
@@ -151,7 +151,8 @@ impl ShadowMesh {
             .map(|corners| [0, 1, 2].map(|i: usize| self.vertices[corners[i] as usize]))
     }
 
-    /// The largest difference from the exact density found by sampling each triangle, in levels. For profiles other than
+    /// The largest difference from the exact density found by sampling each triangle, and what rounding its
+    /// vertices to `f32` may add, in levels. For profiles other than
     /// the disc's it holds their own difference too.
     #[must_use]
     pub fn error_levels(&self) -> f64 {
@@ -176,7 +177,8 @@ impl ShadowMesh {
 
 impl Shadow {
     /// Triangles with a density at each vertex, within the tolerance of the exact density wherever they are interpolated
-    /// and outside of them. With penumbra radius 0 they fill the outline.
+    /// and outside of them, unless the mesh says that it is not [complete](ShadowMesh::is_complete). With penumbra radius 0
+    /// they fill the outline, with chords within 1e-5 of its extent, and the error is that of no penumbra: none.
     ///
     /// ```
     /// use penumbral::{Light, Shape, Tolerance};
@@ -192,28 +194,49 @@ impl Shadow {
         let options = options.into();
         let levels = options.tolerance.as_levels();
         let radius = self.radius();
-        let outline = self.outline(flatness(FLATTENING_SHARE * levels, radius, 0.0));
+        let facet = self.extent() * FACET;
+        let flat = flatness(FLATTENING_SHARE * levels, radius, 0.0).max(if radius == 0.0 {
+            facet
+        } else {
+            0.0
+        });
+        let outline = self.outline(flat);
         let Some((min, max)) = outline.bounds() else {
             return ShadowMesh::empty();
         };
-        // Far from the origin the triangulations would lose digits.
-        let center = min.midpoint(max);
+        // Far from the origin the triangulations would lose digits. From a centre that `f32` holds, positions that it
+        // holds have exact differences.
+        let center = min.midpoint(max).as_vec2().as_dvec2();
         let outline = outline.moved(-center);
         if radius == 0.0 {
-            let loops = outline.polygons((max - min).max_element() * FACET);
-            return umbra::mesh(&loops, center);
+            return umbra::mesh(&outline.polygons(facet), center);
+        }
+        let step = min.abs().max(max.abs()).max_element() * f64::from(f32::EPSILON);
+        if radius < step * NARROWEST {
+            // `f32` has no room for the rings of such a penumbra: a hard edge is half of density away from it.
+            return ShadowMesh {
+                error_levels: 127.5,
+                complete: false,
+                ..umbra::mesh(&outline.polygons(facet), center)
+            };
         }
 
         let pieces = Pieces::within(levels / 255.0 * SLACK);
-        let flat = radius * (RING_FLATNESS * levels).min(COARSEST_RING);
-        let circles = projection_circles(&outline, radius, flat);
-        let rings = pieces
-            .knots
-            .iter()
-            .map(|knot| (*knot, tangent_loops(&circles, knot.t, flat)))
-            .collect();
-        let field = Field::new(&self.exact_outline().moved(-center), radius);
-        Refinement::new(field, options, rings).run(center)
+        let mut flat = radius * (RING_FLATNESS * levels).min(COARSEST_RING);
+        loop {
+            let circles = projection_circles(&outline, radius, flat);
+            let count = circles.iter().map(Vec::len).sum::<usize>() * pieces.knots.len();
+            // A penumbra that is very narrow for its outline has too many vertices from the start: coarser rings leave
+            // refinement room, and what error remains is reported.
+            if 2 * count > options.max_vertices && flat < facet {
+                flat *= 4.0;
+                continue;
+            }
+            let loops = |knot: &Knot| (*knot, tangent_loops(&circles, knot.t, flat));
+            let rings = pieces.knots.iter().map(loops).collect();
+            let field = Field::new(&self.exact_outline().moved(-center), radius);
+            return Refinement::new(field, options, rings).run(center, step);
+        }
     }
 }
 
@@ -223,13 +246,13 @@ impl Shadow {
     pub fn umbra_bounds(&self) -> Option<Bounds> {
         let outline = self.exact_outline();
         let (min, max) = outline.bounds()?;
+        if self.radius() == 0.0 {
+            return Some(Bounds::outwards(min, max));
+        }
         let center = min.midpoint(max);
-        let circles = projection_circles(
-            &outline.moved(-center),
-            self.radius(),
-            self.radius() * UMBRA_FLATNESS,
-        );
-        let loops = tangent_loops(&circles, 1.0, self.radius() * UMBRA_FLATNESS);
+        let flat = (self.radius() * UMBRA_FLATNESS).max(self.extent() * UMBRA_FACET);
+        let circles = projection_circles(&outline.moved(-center), self.radius(), flat);
+        let loops = tangent_loops(&circles, 1.0, flat);
         let mut points = loops.iter().flatten();
         let first = *points.next()?;
         let (min, max) = points.fold((first, first), |(min, max), &p| (min.min(p), max.max(p)));
@@ -249,6 +272,9 @@ fn projection_circles(outline: &Outline, radius: f64, flatness: f64) -> Vec<Vec<
 /// How far the chords of an umbra's arcs may be from them, over the penumbra radius.
 const UMBRA_FLATNESS: f64 = 1e-4;
 
+/// The same over the outline's extent, where the radius is next to nothing.
+const UMBRA_FACET: f64 = 1e-7;
+
 /// The part of the tolerance that flattening curves may use up.
 const FLATTENING_SHARE: f64 = 0.1;
 
@@ -262,6 +288,9 @@ const RING_FLATNESS: f64 = 0.005;
 
 /// The same at large tolerances: beyond, rings could cross.
 const COARSEST_RING: f64 = 0.02;
+
+/// The narrowest penumbra that is drawn, in steps of `f32` at its coordinates.
+const NARROWEST: f64 = 64.0;
 
 /// How far the chords of a hard shadow's arcs may be from them, over its extent.
 const FACET: f64 = 1e-5;

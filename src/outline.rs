@@ -48,7 +48,26 @@ pub(crate) struct Arc {
     pub(crate) to: DVec2,
 }
 
+impl Line {
+    fn mapped(&self, place: impl Fn(DVec2) -> DVec2) -> Self {
+        Self {
+            from: place(self.from),
+            to: place(self.to),
+        }
+    }
+}
+
 impl Arc {
+    pub(crate) fn mapped(&self, factor: f64, place: impl Fn(DVec2) -> DVec2) -> Self {
+        Self {
+            center: place(self.center),
+            radius: self.radius * factor,
+            from: place(self.from),
+            to: place(self.to),
+            ..*self
+        }
+    }
+
     pub(crate) fn at(&self, angle: f64) -> DVec2 {
         self.center + self.radius * DVec2::new(cos(angle), sin(angle))
     }
@@ -147,21 +166,12 @@ impl Edge {
         }
     }
 
-    /// The edge scaled by `factor` and then moved by `offset`.
-    pub(crate) fn placed(&self, factor: f64, offset: DVec2) -> Self {
-        let place = |p: DVec2| p * factor + offset;
+    /// The edge under a map of its points that moves and scales by `factor`.
+    pub(crate) fn mapped(&self, factor: f64, place: impl Fn(DVec2) -> DVec2) -> Self {
         match self {
-            Self::Line(line) | Self::Border(line) => Self::Line(Line {
-                from: place(line.from),
-                to: place(line.to),
-            }),
-            Self::Arc(arc) => Self::Arc(Arc {
-                center: place(arc.center),
-                radius: arc.radius * factor,
-                from: place(arc.from),
-                to: place(arc.to),
-                ..*arc
-            }),
+            Self::Line(line) => Self::Line(line.mapped(place)),
+            Self::Border(line) => Self::Border(line.mapped(place)),
+            Self::Arc(arc) => Self::Arc(arc.mapped(factor, place)),
         }
     }
 }
@@ -260,7 +270,12 @@ impl Outline {
         let loops = self.loops.iter();
         Self {
             loops: loops
-                .map(|edges| edges.iter().map(|edge| edge.placed(1.0, offset)).collect())
+                .map(|edges| {
+                    edges
+                        .iter()
+                        .map(|edge| edge.mapped(1.0, |p| p + offset))
+                        .collect()
+                })
                 .collect(),
         }
     }

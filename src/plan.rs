@@ -35,7 +35,7 @@ pub struct Choice {
     pub why: &'static str,
 }
 
-/// The method for a shadow within a tolerance.
+/// The method for a shadow within a tolerance. For pixels there is one so far, which keeps every tolerance.
 #[must_use]
 pub fn choose(shadow: &Shadow, _tolerance: Tolerance, target: Target) -> Choice {
     let (method, why) = match target {

@@ -5,7 +5,8 @@ mod json;
 
 use crate::error::{self, Error, MAX_PIXELS, Result};
 use crate::grid::Grid;
-use crate::light::Light;
+use crate::light::{Light, Projection};
+use crate::shadow::Shadow;
 use crate::shape::Shape;
 use crate::tone::{Color, Tone};
 
@@ -101,6 +102,11 @@ impl Surface {
     #[must_use]
     pub fn weight(&self) -> f32 {
         self.opacity * f32::from(self.fill.a) / 255.0
+    }
+
+    /// The surface's own coverage: its hard shadow on itself.
+    pub(crate) fn cover(&self) -> Shadow {
+        Shadow::project(&[self.shape()], &Projection::in_place(0.0))
     }
 
     /// Whether nothing is seen through it.
@@ -213,14 +219,18 @@ impl Scene {
         &self.surfaces
     }
 
-    /// The picture's pixels: the canvas times the scale, rounded up.
+    /// The picture's pixels: the canvas times the scale, rounded up. A thousandth of a pixel is no pixel: scales like
+    /// 2.625 and canvases like 411.428 are not quite what they say in `f32`.
     ///
     /// # Errors
     /// [`Error::PictureSize`] over [`MAX_PIXELS`].
     fn picture_size(&self) -> Result<[u32; 2]> {
-        let [width, height] = self
-            .canvas
-            .map(|side| (f64::from(side) * f64::from(self.scale)).ceil());
+        let pixels = |side: f32| {
+            (f64::from(side) * f64::from(self.scale) - 1e-3)
+                .ceil()
+                .max(1.0)
+        };
+        let [width, height] = self.canvas.map(pixels);
         if width * height > MAX_PIXELS as f64 {
             return Err(Error::PictureSize {
                 width: width as u64,
@@ -253,6 +263,23 @@ impl Scene {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn decimal_scales_give_whole_pictures() {
+        let light = Light::android(100.0).unwrap();
+        for (canvas, scale, pixels) in [
+            (411.428_58, 2.625, 1080),
+            (1.1, 10.0, 11),
+            (10.01, 1.0, 11),
+            (0.2, 1.0, 1),
+        ] {
+            let scene = Scene::new([canvas, 1.0], light)
+                .unwrap()
+                .with_scale(scale)
+                .unwrap();
+            assert_eq!(scene.grid().unwrap().width(), pixels, "{canvas} x {scale}");
+        }
+    }
 
     #[test]
     fn what_is_out_of_range_is_refused() {

@@ -175,6 +175,10 @@ impl Shape {
     /// than [`MAX_SEGMENTS`](crate::MAX_SEGMENTS) segments, no width or no height.
     pub fn path(path: &Path, rule: FillRule) -> Result<Self> {
         path.validate()?;
+        let encloses = |contour: &Contour| contour.segments.len() > 1 || !contour.is_straight();
+        if !path.contours.iter().any(encloses) {
+            return Err(Error::EmptyPath { field: "path" });
+        }
         let shape = Self {
             contours: path.contours.clone(),
             cover: Cover::Rule(rule),
@@ -197,7 +201,13 @@ impl Shape {
             *to = error::coordinate("affine", f64::from(from))?;
         }
         let affine = DAffine2::from_cols_array(&columns);
-        error::positive("affine area factor", affine.matrix2.determinant().abs())?;
+        let area_factor = affine.matrix2.determinant().abs();
+        if area_factor == 0.0 {
+            return Err(Error::NotPositive {
+                field: "affine area factor",
+                value: area_factor,
+            });
+        }
         let shape = self.mapped(&affine);
         if let Some((min, max)) = shape.hull() {
             coordinates("transformed shape", min)?;

@@ -15,6 +15,8 @@ const GRID: f64 = 1.0 / 64.0;
 pub(crate) struct Svg {
     /// Pixels a scene unit.
     scale: f64,
+    /// Decimals of coordinates: a thousandth of a pixel.
+    decimals: usize,
     defs: String,
     body: String,
     gradients: usize,
@@ -35,41 +37,41 @@ pub(crate) fn number(value: f64, decimals: usize) -> String {
     }
 }
 
-/// A coordinate in scene units, to a thousandth, or on the grid of triangles.
-fn coordinate(value: f64) -> String {
-    number(value, 3)
-}
-
 fn opacity(value: f64) -> String {
     number(value, 4)
-}
-
-fn place(p: DVec2) -> String {
-    format!("{} {}", coordinate(p.x), coordinate(p.y))
-}
-
-/// Path data of closed polygons.
-pub(crate) fn path_data(polygons: &[Vec<DVec2>]) -> String {
-    let mut data = String::new();
-    for polygon in polygons {
-        for (index, &vertex) in polygon.iter().enumerate() {
-            data.push(if index == 0 { 'M' } else { 'L' });
-            data.push_str(&place(vertex));
-        }
-        data.push('Z');
-    }
-    data
 }
 
 impl Svg {
     /// An empty document that will be seen at `scale` pixels a scene unit.
     pub(crate) fn new(scale: f64) -> Self {
+        let decimals = 3 + (0..4).filter(|&power| scale > 10.0_f64.powi(power)).count();
         Self {
             scale,
+            decimals,
             defs: String::new(),
             body: String::new(),
             gradients: 0,
         }
+    }
+
+    /// A coordinate in scene units.
+    fn coordinate(&self, value: f64) -> String {
+        number(value, self.decimals)
+    }
+
+    /// Path data of closed polygons.
+    pub(crate) fn path_data(&self, polygons: &[Vec<DVec2>]) -> String {
+        let mut data = String::new();
+        for polygon in polygons {
+            for (index, vertex) in polygon.iter().enumerate() {
+                data.push(if index == 0 { 'M' } else { 'L' });
+                data.push_str(&self.coordinate(vertex.x));
+                data.push(' ');
+                data.push_str(&self.coordinate(vertex.y));
+            }
+            data.push('Z');
+        }
+        data
     }
 
     /// A document for a part of this one: its names go on from here.
@@ -115,7 +117,13 @@ impl Svg {
         if (at[1] - at[0]).perp_dot(at[2] - at[0]) == 0.0 {
             return;
         }
-        let corner = |p: DVec2| format!("{} {}", number(p.x, 6), number(p.y, 6));
+        let corner = |p: DVec2| {
+            format!(
+                "{} {}",
+                number(p.x, self.decimals + 3),
+                number(p.y, self.decimals + 3)
+            )
+        };
         let data = format!("M{}L{}L{}Z", corner(at[0]), corner(at[1]), corner(at[2]));
         let (low, high) = density
             .iter()
@@ -146,10 +154,10 @@ impl Svg {
         self.define(&format!(
             "<linearGradient id=\"g{id}\" gradientUnits=\"userSpaceOnUse\" x1=\"{}\" y1=\"{}\" x2=\"{}\" y2=\"{}\">\
              <stop stop-opacity=\"{}\"/><stop offset=\"1\" stop-opacity=\"{}\"/></linearGradient>",
-            coordinate(start.x),
-            coordinate(start.y),
-            coordinate(end.x),
-            coordinate(end.y),
+            self.coordinate(start.x),
+            self.coordinate(start.y),
+            self.coordinate(end.x),
+            self.coordinate(end.y),
             opacity(low),
             opacity(high),
         ));
@@ -162,11 +170,13 @@ impl Svg {
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" viewBox=\"{} {}\">",
-            coordinate(size[0]),
-            coordinate(size[1]),
-            place(origin),
-            place(extent),
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" viewBox=\"{} {} {} {}\">",
+            number(size[0], 3),
+            number(size[1], 3),
+            self.coordinate(origin.x),
+            self.coordinate(origin.y),
+            self.coordinate(extent.x),
+            self.coordinate(extent.y),
         );
         if !self.defs.is_empty() {
             let _ = write!(text, "<defs>\n{}</defs>\n", self.defs);
@@ -217,8 +227,8 @@ mod tests {
         assert!(
             text.contains(&format!(
                 "x2=\"{}\" y2=\"{}\"",
-                coordinate(end.x),
-                coordinate(end.y)
+                number(end.x, 3),
+                number(end.y, 3)
             )),
             "{text}"
         );

@@ -25,7 +25,7 @@ impl Path {
             if count >= MAX_SEGMENTS {
                 return Err(Error::TooMany {
                     field: "SVG path data",
-                    count,
+                    count: count + 1,
                     limit: MAX_SEGMENTS,
                 });
             }

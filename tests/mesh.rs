@@ -397,3 +397,40 @@ fn one_shadow_has_one_mesh() {
         assert_eq!(mesh(), mesh(), "{name}");
     }
 }
+
+#[test]
+fn next_to_no_penumbra_takes_no_more_than_the_limit() {
+    let light = Light::new([0.0, 0.0, 600.0], 800.0).unwrap();
+    let disc = Shape::circle([0.0, 0.0], 500.0).unwrap();
+    for elevation in [1e-6, 1e-3, 0.02] {
+        let shadow = light.cast(&disc, elevation, 0.0).unwrap();
+        let mesh = shadow.mesh(levels(4.0));
+        assert!(
+            mesh.vertices().len() <= 1 << 16,
+            "{}",
+            mesh.vertices().len()
+        );
+        // A penumbra that `f32` has no room for is reported, not drawn.
+        assert_eq!(
+            mesh.is_complete(),
+            mesh.error_levels() <= 4.0,
+            "{}",
+            mesh.error_levels()
+        );
+        sanity_check_where_soft(&mesh);
+        let umbra = shadow.umbra_bounds().unwrap();
+        assert!((umbra.max[0] - 500.0).abs() < 0.05, "{umbra:?}");
+    }
+    let hard = Light::new([0.0, 0.0, 600.0], 0.0)
+        .unwrap()
+        .cast(&disc, 300.0, 0.0)
+        .unwrap();
+    assert_eq!(hard.umbra_bounds(), hard.bounds());
+}
+
+/// [`sanity_check`], for meshes that have a penumbra.
+fn sanity_check_where_soft(mesh: &ShadowMesh) {
+    if mesh.vertices().iter().any(|vertex| vertex.density == 0.0) {
+        sanity_check(mesh);
+    }
+}

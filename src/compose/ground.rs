@@ -2,14 +2,12 @@
 
 use super::{Receiver, key_casts};
 use crate::density::{DensitySink, exact};
-use crate::error::{Error, Result};
+use crate::error::{self, Error, Result};
 use crate::grid::Grid;
-use crate::light::Projection;
 use crate::mesh::Tolerance;
 use crate::plan::Method;
 use crate::scene::Scene;
 use crate::scratch::Scratch;
-use crate::shadow::Shadow;
 
 /// Densities on a picture's pixels, row by row, 0 to 1.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -48,8 +46,9 @@ impl DensityMap {
     /// Blends black of the strength `key` (0 to 1) times the density onto premultiplied RGBA8 pixels, row by row.
     ///
     /// # Errors
-    /// [`Error::BufferSize`] when `pixels` are not as many as the densities, 4 bytes each.
+    /// [`Error::BufferSize`] when `pixels` are not as many as the densities, 4 bytes each; a key that is not from 0 to 1.
     pub fn blend_rgba8(&self, key: f32, pixels: &mut [u8]) -> Result<()> {
+        error::within("key", f64::from(key), 0.0, 1.0)?;
         let needed = self.densities.len() * 4;
         if pixels.len() != needed {
             return Err(Error::BufferSize {
@@ -118,12 +117,11 @@ impl Scene {
 
     fn mark_hidden(&self, grid: &Grid, passed: &mut [f32], scratch: &mut Scratch) {
         for surface in self.surfaces().iter().filter(|surface| surface.is_opaque()) {
-            let cover = Shadow::project(&[surface.shape()], &Projection::in_place(0.0));
             let mut sink = Hidden {
                 width: grid.width(),
                 passed: &mut *passed,
             };
-            exact::fill(&cover, grid, scratch, &mut sink);
+            exact::fill(&surface.cover(), grid, scratch, &mut sink);
         }
     }
 }

@@ -6,10 +6,8 @@ use super::{Cast, Receiver, ambient_casts, key_casts};
 use crate::density::{DensitySink, exact};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
-use crate::light::Projection;
 use crate::scene::{Scene, Surface};
 use crate::scratch::Scratch;
-use crate::shadow::Shadow;
 use crate::tone::Color;
 
 /// Draws scenes. It keeps nothing of a scene but the memory that it drew it with.
@@ -118,7 +116,7 @@ impl Renderer {
                     width: grid.width(),
                     rank: index as u32 + 1,
                 };
-                exact::fill(&cover_of(surface), grid, &mut self.scratch, &mut sink);
+                exact::fill(&surface.cover(), grid, &mut self.scratch, &mut sink);
             }
         }
     }
@@ -132,12 +130,7 @@ impl Renderer {
             cover: &mut self.cover,
             width,
         };
-        exact::fill(
-            &cover_of(surface),
-            &layer.grid,
-            &mut self.scratch,
-            &mut sink,
-        );
+        exact::fill(&surface.cover(), &layer.grid, &mut self.scratch, &mut sink);
     }
 
     fn draw_layer(&mut self, scene: &Scene, layer: &Layer, pixmap: &mut Pixmap) -> Result<()> {
@@ -199,11 +192,6 @@ impl Renderer {
             exact::fill(&cast.shadow, &layer.grid, &mut self.scratch, &mut sink);
         }
     }
-}
-
-/// A surface's own coverage: its hard shadow on itself.
-fn cover_of(surface: &Surface) -> Shadow {
-    Shadow::project(&[surface.shape()], &Projection::in_place(0.0))
 }
 
 fn layer(scene: &Scene, surface: &Surface, rank: u32, grid: &Grid) -> Option<Layer> {

@@ -11,16 +11,15 @@ use glam::DVec2;
 use super::{Cast, Receiver, ambient_casts, key_casts};
 use crate::density::{averaged_side, flatness};
 use crate::error::Result;
-use crate::light::Projection;
 use crate::mesh::Tolerance;
 use crate::scene::{Scene, Surface};
 use crate::shadow::Shadow;
-use crate::svg::{Svg, number, path_data};
+use crate::svg::{Svg, number};
 use crate::tone::Color;
 
 impl Scene {
-    /// The scene as an SVG picture of the same size and the same look as the PNG: within `tolerance` of the exact shadows,
-    /// where they are wide against a pixel, and the rounding of what shows it. Coordinates have fixed decimals and everything has its place, so that the
+    /// The scene as an SVG picture of the same size and the same look as the PNG: each shadow within `tolerance` of the
+    /// exact one, where it is wide against a pixel, and the rounding of what shows it. Coordinates have fixed decimals and everything has its place, so that the
     /// text can be a snapshot.
     ///
     /// # Errors
@@ -71,8 +70,9 @@ impl Writer<'_> {
     fn draw_surface(&mut self, surface: &Surface, receiver: &Receiver, rank: usize) -> Result<()> {
         // A tenth of a level of coverage.
         let flat = flatness(0.1, 0.0, 1.0 / f64::from(self.scene.scale()));
-        let cover = Shadow::project(&[surface.shape()], &Projection::in_place(0.0));
-        let data = path_data(&cover.outline(flat).polygons(flat));
+        let data = self
+            .svg
+            .path_data(&surface.cover().outline(flat).polygons(flat));
         let Color { r, g, b, .. } = surface.fill();
         let fill = Color::rgb(r, g, b);
         let weight = number(f64::from(surface.weight()), 4);

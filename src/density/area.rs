@@ -10,7 +10,7 @@ use core::f64::consts::{FRAC_PI_4, PI, TAU};
 use glam::DVec2;
 use libm::{asin, atan2, sin, sqrt};
 
-use crate::outline::{Arc, Edge, Line};
+use crate::outline::{Arc, Edge};
 
 /// The fraction of the disc of `radius` about `point` that lies inside the edges; for radius 0, whether the point does.
 pub(crate) fn at_point<'a>(
@@ -18,23 +18,20 @@ pub(crate) fn at_point<'a>(
     point: DVec2,
     radius: f64,
 ) -> f64 {
-    let double_area: f64 = if radius > 0.0 {
-        let factor = 1.0 / radius;
-        edges
-            .map(|edge| match edge.placed(factor, point * -factor) {
-                Edge::Line(line) => of_line(line),
-                Edge::Arc(arc) => of_arc(arc, 1.0),
-                Edge::Border(line) => angle(line.from, line.to),
-            })
-            .sum()
+    // The disc becomes the unit disc about the origin; a point keeps its unit.
+    let (disc, factor) = if radius > 0.0 {
+        (1.0, 1.0 / radius)
     } else {
-        edges
-            .map(|edge| match edge.placed(1.0, -point) {
-                Edge::Line(line) | Edge::Border(line) => angle(line.from, line.to),
-                Edge::Arc(arc) => of_arc(arc, 0.0),
-            })
-            .sum()
+        (0.0, 1.0)
     };
+    let place = |p: DVec2| (p - point) * factor;
+    let double_area: f64 = edges
+        .map(|edge| match edge {
+            Edge::Line(line) if disc > 0.0 => of_line(place(line.from), place(line.to)),
+            Edge::Line(line) | Edge::Border(line) => angle(place(line.from), place(line.to)),
+            Edge::Arc(arc) => of_arc(&arc.mapped(factor, place), disc),
+        })
+        .sum();
     // Rounding may leave some 1e-16 beyond either end.
     (double_area / TAU).clamp(0.0, 1.0)
 }
@@ -45,7 +42,7 @@ fn angle(a: DVec2, b: DVec2) -> f64 {
 }
 
 /// Twice the area that a line spans with the unit disc about the origin.
-fn of_line(Line { from, to }: Line) -> f64 {
+fn of_line(from: DVec2, to: DVec2) -> f64 {
     let length = (to - from).length();
     if length == 0.0 {
         return 0.0;
@@ -76,7 +73,7 @@ fn of_line(Line { from, to }: Line) -> f64 {
 }
 
 /// Twice the area that an arc spans with the disc of radius `disc`, 1 or 0, about the origin.
-fn of_arc(arc: Arc, disc: f64) -> f64 {
+fn of_arc(arc: &Arc, disc: f64) -> f64 {
     let distance = arc.center.length();
     // The arc's points in the disc are those within `half_width` of the one nearest to the origin. By half angles:
     // the cosine alone would lose all digits where the disc is small.

@@ -54,7 +54,11 @@ pub(crate) fn fill(
         sink,
     };
     let mut edges = painter.scratch.take();
-    edges.extend(outline.edges().map(|edge| edge.placed(scale, -base)));
+    edges.extend(
+        outline
+            .edges()
+            .map(|edge| edge.mapped(scale, |p| p * scale - base)),
+    );
     let mut tile = LEAF;
     while (tile as f64) < extent {
         tile *= 2;

@@ -138,7 +138,8 @@ fn scan_convert(triangle: [MeshVertex; 3], grid: &Grid, sink: &mut impl DensityS
         let mut density = left.1 + step * (f64::from(columns.start) + 0.5 - left.0);
         for column in columns {
             if sink.wants(column, row) {
-                sink.put(column, row, density as f32);
+                // Steps add up to some 1e-16 beyond either end.
+                sink.put(column, row, density.clamp(0.0, 1.0) as f32);
             }
             density += step;
         }

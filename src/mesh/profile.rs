@@ -3,7 +3,7 @@
 use core::f64::consts::{FRAC_PI_2, PI};
 use std::sync::OnceLock;
 
-use libm::{asin, cos, exp, sqrt};
+use libm::{asin, cbrt, cos, exp, sqrt};
 
 /// How density grows across a straight edge, from the outer edge of the penumbra to the umbra.
 ///
@@ -53,7 +53,8 @@ fn disc_distance(density: f64) -> f64 {
     // F is odd about 1/2 and convex below it: Newton's steps from the outer side never pass the solution. Near the end
     // F is 2/3 (2 (1 + t))^1.5 / π.
     let tail = density.min(1.0 - density).max(0.0);
-    let mut past = (1.5 * PI * tail).cbrt_squared() / 2.0;
+    let root = cbrt(1.5 * PI * tail);
+    let mut past = root * root / 2.0;
     for _ in 0..6 {
         let t = past.min(1.0) - 1.0;
         let slope = sqrt((1.0 - t) * (1.0 + t)) / FRAC_PI_2;
@@ -66,17 +67,6 @@ fn disc_distance(density: f64) -> f64 {
         past - 1.0
     } else {
         1.0 - past
-    }
-}
-
-trait CbrtSquared {
-    fn cbrt_squared(self) -> Self;
-}
-
-impl CbrtSquared for f64 {
-    fn cbrt_squared(self) -> Self {
-        let root = libm::cbrt(self);
-        root * root
     }
 }
 

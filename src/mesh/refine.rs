@@ -4,6 +4,7 @@
 //! every new triangle and adds a vertex at its worst point, most wrong first, until none is wrong by more than the
 //! tolerance.
 
+use core::f64::consts::FRAC_2_PI;
 use std::collections::HashMap;
 
 use glam::DVec2;
@@ -57,6 +58,8 @@ pub(super) struct Refinement {
     field: Field,
     options: MeshOptions,
     triangles: Triangles,
+    /// Whether a part of a ring could not be built: what lies on which side of it is not known then.
+    broken: bool,
     /// For each ring, by how much its vertices differ from the density where they are, to balance errors.
     offsets: Vec<f64>,
     umbra: Vec<Vec<FixedVertexHandle>>,
@@ -73,6 +76,7 @@ impl Refinement {
             field,
             options,
             triangles: Triangles::new(),
+            broken: false,
             offsets: rings.iter().map(offset).collect(),
             umbra: Vec::new(),
             assessed: HashMap::new(),
@@ -84,9 +88,7 @@ impl Refinement {
                     .filter_map(|&point| refinement.insert(point, Some(index)))
                     .collect();
                 for (&from, &to) in handles.iter().zip(handles.iter().cycle().skip(1)) {
-                    if from != to {
-                        refinement.triangles.try_add_constraint(from, to);
-                    }
+                    refinement.constrain(from, to);
                 }
                 if index + 1 == refinement.offsets.len() {
                     refinement.umbra.push(handles);
@@ -96,8 +98,8 @@ impl Refinement {
         refinement
     }
 
-    /// The mesh, its vertices moved by `center`.
-    pub(super) fn run(mut self, center: DVec2) -> ShadowMesh {
+    /// The mesh, its vertices moved by `center`, where positions in `f32` are up to `rounding` off.
+    pub(super) fn run(mut self, center: DVec2, rounding: f64) -> ShadowMesh {
         let limit = self.options.tolerance.as_levels() / 255.0 * SAMPLED;
         let nearest = NEAREST * self.field.radius();
         let mut complete = false;
@@ -125,7 +127,7 @@ impl Refinement {
                 break;
             }
         }
-        self.finish(center, complete)
+        self.finish(center, rounding, complete)
     }
 
     /// The density that a vertex or sample at `point` should have.
@@ -152,6 +154,13 @@ impl Refinement {
                 ring,
             })
             .ok()
+    }
+
+    fn constrain(&mut self, from: FixedVertexHandle, to: FixedVertexHandle) {
+        if from != to {
+            let added = self.triangles.try_add_constraint(from, to);
+            self.broken |= added.is_empty() && !self.triangles.exists_constraint(from, to);
+        }
     }
 
     fn faces(&self, wanted: Region) -> Vec<Face> {
@@ -243,8 +252,8 @@ impl Refinement {
                 let share = (assessment.worst - start).dot(way) / way.length_squared();
                 self.triangles.remove_constraint_edge(edge);
                 if let Some(vertex) = self.insert(start + way * share, ring) {
-                    self.triangles.try_add_constraint(from, vertex);
-                    self.triangles.try_add_constraint(vertex, to);
+                    self.constrain(from, vertex);
+                    self.constrain(vertex, to);
                 }
             }
             None if corners.into_iter().any(is_near) => {}
@@ -326,7 +335,7 @@ impl Refinement {
         (density - self.target(point).1).abs()
     }
 
-    fn finish(mut self, center: DVec2, complete: bool) -> ShadowMesh {
+    fn finish(mut self, center: DVec2, rounding: f64, complete: bool) -> ShadowMesh {
         let mut mesh = ShadowMesh {
             complete,
             ..ShadowMesh::empty()
@@ -376,7 +385,10 @@ impl Refinement {
             .collect();
         let umbra = self.options.profile.in_place_of(1.0);
         error = error.max(if loops.is_empty() { 0.0 } else { 1.0 - umbra });
-        mesh.error_levels = error * 255.0;
+        // Density changes by at most 2 / π over the radius.
+        error += rounding * FRAC_2_PI / self.field.radius();
+        mesh.error_levels = if self.broken { 255.0 } else { error * 255.0 };
+        mesh.complete &= !self.broken;
         let position =
             |index: u32| DVec2::from(mesh.vertices[index as usize].position.map(f64::from));
         match umbra::fill(&loops, |_| None, position) {

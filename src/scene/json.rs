@@ -1,6 +1,6 @@
 //! Reading the JSON scene format.
 
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer};
 use serde_json::value::RawValue;
 
 use super::{Scene, Surface};
@@ -16,16 +16,27 @@ const MAX_LENGTH: usize = 1 << 28;
 /// A scene may not have more surfaces than this.
 const MAX_SURFACES: usize = 1 << 16;
 
+/// A field that is there has a value: `null` would be a silent default.
+fn some<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
+    reader: D,
+) -> core::result::Result<Option<T>, D::Error> {
+    T::deserialize(reader).map(Some)
+}
+
 /// Each field as the piece of text that it is, so that what is wrong with one can be said with its place.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SceneFields<'a> {
     #[serde(borrow)]
     canvas: &'a RawValue,
+    #[serde(borrow, default, deserialize_with = "some")]
     background: Option<&'a RawValue>,
+    #[serde(borrow, default, deserialize_with = "some")]
     scale: Option<&'a RawValue>,
     light: &'a RawValue,
+    #[serde(borrow, default, deserialize_with = "some")]
     key: Option<&'a RawValue>,
+    #[serde(borrow, default, deserialize_with = "some")]
     ambient: Option<&'a RawValue>,
     surfaces: Vec<&'a RawValue>,
 }
@@ -44,23 +55,41 @@ struct LightFields {
 struct SurfaceFields {
     shape: String,
     elevation: f32,
+    #[serde(default, deserialize_with = "some")]
     opacity: Option<f32>,
+    #[serde(default, deserialize_with = "some")]
     fill: Option<String>,
+    #[serde(default, deserialize_with = "some")]
     name: Option<String>,
+    #[serde(default, deserialize_with = "some")]
     x: Option<f32>,
+    #[serde(default, deserialize_with = "some")]
     y: Option<f32>,
+    #[serde(default, deserialize_with = "some")]
     w: Option<f32>,
+    #[serde(default, deserialize_with = "some")]
     h: Option<f32>,
+    #[serde(default, deserialize_with = "some")]
     radius: Option<f32>,
+    #[serde(default, deserialize_with = "some")]
     radii: Option<[RadiusFields; 4]>,
+    #[serde(default, deserialize_with = "some")]
     cx: Option<f32>,
+    #[serde(default, deserialize_with = "some")]
     cy: Option<f32>,
+    #[serde(default, deserialize_with = "some")]
     r: Option<f32>,
+    #[serde(default, deserialize_with = "some")]
     rx: Option<f32>,
+    #[serde(default, deserialize_with = "some")]
     ry: Option<f32>,
+    #[serde(default, deserialize_with = "some")]
     points: Option<Vec<[f32; 2]>>,
+    #[serde(default, deserialize_with = "some")]
     rings: Option<Vec<Vec<[f32; 2]>>>,
+    #[serde(default, deserialize_with = "some")]
     d: Option<String>,
+    #[serde(default, deserialize_with = "some")]
     fill_rule: Option<String>,
 }
 
@@ -447,6 +476,13 @@ mod tests {
             .unwrap_err()
             .to_string();
         assert!(text.contains("surfaces"), "{text}");
+        let text = scene(r#"{"shape":"circle","cx":1,"cy":2,"r":3,"elevation":5,"opacity":null}"#)
+            .unwrap_err()
+            .to_string();
+        assert!(
+            text.contains("surfaces[0].opacity: invalid type: null"),
+            "{text}"
+        );
         let text = scene("{").unwrap_err().to_string();
         assert!(text.starts_with("line 4"), "{text}");
         assert!(Scene::from_json("{} {}").is_err());

@@ -6,6 +6,8 @@ mod mesh;
 mod output;
 mod render;
 
+use std::fs::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -93,6 +95,9 @@ fn tolerance(text: &str) -> Result<Tolerance, String> {
     Tolerance::levels(levels).map_err(|error| error.to_string())
 }
 
+/// Scenes of up to 256 MiB are read.
+const MAX_SCENE_LENGTH: u64 = 1 << 28;
+
 /// What went wrong, in one line.
 type Failure = String;
 
@@ -128,7 +133,11 @@ fn main() -> ExitCode {
 }
 
 fn read_scene(path: &Path) -> Result<Scene, Failure> {
-    let bytes = std::fs::read(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    // One byte more than is read tells a file that is too long, however long it is.
+    let mut bytes = Vec::new();
+    File::open(path)
+        .and_then(|file| file.take(MAX_SCENE_LENGTH + 1).read_to_end(&mut bytes))
+        .map_err(|error| format!("{}: {error}", path.display()))?;
     let text = String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
         format!(
