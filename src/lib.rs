@@ -57,6 +57,7 @@
 //! | `mesh.rs`, `mesh/` | [`ShadowMesh`]: tangents, triangulation, refinement, Gouraud rasterisation |
 //! | `plan.rs` | [`plan::choose`]: the cheapest method within a tolerance |
 //! | `scene.rs`, `scene/json.rs` | [`Scene`], [`Surface`], and their JSON format |
+//! | `tolerance.rs` | [`Tolerance`]: how wrong a shadow may be |
 //! | `tone.rs` | [`Tone`], [`Color`]: how density becomes paint |
 //! | `compose.rs`, `compose/` | who casts on whom; pictures and SVG |
 //! | `svg.rs` | writing SVG |
@@ -96,6 +97,7 @@ mod shape;
 mod svg;
 #[cfg(feature = "svg-path")]
 mod svg_path;
+mod tolerance;
 mod tone;
 
 pub use compose::DensityMap;
@@ -104,12 +106,13 @@ pub use compose::Renderer;
 pub use error::{Error, MAX_COORDINATE, MAX_PIXELS, MAX_SEGMENTS, Result};
 pub use grid::Grid;
 pub use light::Light;
-pub use mesh::{MeshOptions, MeshVertex, Profile, ShadowMesh, Tolerance, meshes_to_svg};
+pub use mesh::{MeshOptions, MeshVertex, Profile, ShadowMesh, meshes_to_svg};
 pub use path::{FillRule, Path};
 pub use scene::{Scene, Surface};
 pub use scratch::Scratch;
 pub use shadow::{Bounds, Shadow};
 pub use shape::{CornerRadii, Shape};
+pub use tolerance::Tolerance;
 pub use tone::{Color, ParseColorError, Tone};
 
 /// The README's code, compiled with the documentation's.

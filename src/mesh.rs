@@ -24,52 +24,9 @@ use refine::Refinement;
 use tangents::{ProjectionCircle, tangent_loops};
 
 use crate::density::{Field, flatness};
-use crate::error::{self, Result};
 use crate::outline::Outline;
 use crate::shadow::{Bounds, Shadow};
-
-/// The largest error that is allowed, in levels (1/255 of density). Half of it takes about 1.4 times the triangles along
-/// straight edges and twice as many at corners.
-#[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
-pub struct Tolerance(f64);
-
-impl Tolerance {
-    /// One level: what 8-bit rounding does twice over.
-    pub const ONE_LEVEL: Self = Self(1.0);
-
-    /// A tolerance of 1/16 to 64 levels.
-    ///
-    /// # Errors
-    /// A number outside that range.
-    pub fn levels(levels: f32) -> Result<Self> {
-        Ok(Self(error::within(
-            "tolerance",
-            f64::from(levels),
-            1.0 / 16.0,
-            MOST_LEVELS,
-        )?))
-    }
-
-    /// The tolerance over a strength from 0 to 1, as far as tolerances go.
-    pub(crate) fn divided(self, strength: f64) -> Self {
-        Self((self.0 / strength).min(MOST_LEVELS))
-    }
-
-    /// The tolerance in levels.
-    #[must_use]
-    pub fn as_levels(self) -> f64 {
-        self.0
-    }
-}
-
-/// The largest tolerance, in levels: a quarter of the whole.
-const MOST_LEVELS: f64 = 64.0;
-
-impl Default for Tolerance {
-    fn default() -> Self {
-        Self::ONE_LEVEL
-    }
-}
+use crate::tolerance::Tolerance;
 
 /// How a mesh is made.
 #[derive(Debug, Clone, Copy, PartialEq)]

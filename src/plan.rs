@@ -3,8 +3,8 @@
 use core::fmt;
 use core::str::FromStr;
 
-use crate::mesh::Tolerance;
 use crate::shadow::Shadow;
+use crate::tolerance::Tolerance;
 
 /// The ways to draw a shadow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

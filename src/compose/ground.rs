@@ -4,10 +4,10 @@ use super::{Receiver, key_casts};
 use crate::density::{DensitySink, exact};
 use crate::error::{self, Error, Result};
 use crate::grid::Grid;
-use crate::mesh::Tolerance;
 use crate::plan::Method;
 use crate::scene::Scene;
 use crate::scratch::Scratch;
+use crate::tolerance::Tolerance;
 
 /// Densities on a picture's pixels, row by row, 0 to 1.
 #[derive(Debug, Clone, Default, PartialEq)]

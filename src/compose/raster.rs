@@ -92,11 +92,15 @@ impl Renderer {
         };
         self.cover.clear();
         self.cover.resize(self.topmost.len(), 1.0);
-        self.draw_layer(scene, &ground, pixmap)?;
+        if self.is_visible(&ground, grid.width()) {
+            self.draw_layer(scene, &ground, pixmap)?;
+        }
         progress(1, layers);
         for (index, &surface) in order.iter().enumerate() {
-            if let Some(layer) = layer(scene, &scene.surfaces()[surface], index as u32 + 1, &grid) {
-                self.find_cover(&scene.surfaces()[surface], &layer);
+            let surface = &scene.surfaces()[surface];
+            let layer = layer(scene, surface, index as u32 + 1, &grid);
+            if let Some(layer) = layer.filter(|layer| self.is_visible(layer, grid.width())) {
+                self.find_cover(surface, &layer);
                 self.draw_layer(scene, &layer, pixmap)?;
             }
             progress(index + 2, layers);
@@ -131,6 +135,16 @@ impl Renderer {
             width,
         };
         exact::fill(&surface.cover(), &layer.grid, &mut self.scratch, &mut sink);
+    }
+
+    /// Whether anything of the layer is seen.
+    fn is_visible(&self, layer: &Layer, stride: u32) -> bool {
+        let [left, top] = layer.first;
+        (top..top + layer.grid.height()).any(|row| {
+            let start = (row * stride + left) as usize;
+            let pixels = &self.topmost[start..start + layer.grid.width() as usize];
+            pixels.iter().any(|&rank| rank <= layer.rank)
+        })
     }
 
     fn draw_layer(&mut self, scene: &Scene, layer: &Layer, pixmap: &mut Pixmap) -> Result<()> {

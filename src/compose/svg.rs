@@ -11,10 +11,10 @@ use glam::DVec2;
 use super::{Cast, Receiver, ambient_casts, key_casts};
 use crate::density::{averaged_side, flatness};
 use crate::error::Result;
-use crate::mesh::Tolerance;
 use crate::scene::{Scene, Surface};
 use crate::shadow::Shadow;
 use crate::svg::{Svg, number};
+use crate::tolerance::Tolerance;
 use crate::tone::Color;
 
 impl Scene {
