@@ -67,9 +67,46 @@ impl Receiver {
     }
 }
 
+/// Surfaces that cast one shadow on a receiver.
+struct Casters<'a> {
+    shapes: Vec<&'a Shape>,
+    projection: Projection,
+    weight: f64,
+}
+
+impl Casters<'_> {
+    fn cast(&self) -> Cast {
+        Cast {
+            shadow: Shadow::project(&self.shapes, &self.projection),
+            weight: self.weight,
+        }
+    }
+}
+
 /// The shadows of the light on a receiver.
 pub(crate) fn key_casts(scene: &Scene, receiver: &Receiver) -> Result<Vec<Cast>> {
-    casts(scene, receiver, |elevation| {
+    Ok(key_casters(scene, receiver)?
+        .iter()
+        .map(Casters::cast)
+        .collect())
+}
+
+/// The ambient shadows on a receiver: the caster's own outline, blurred by half its height over the receiver, and the
+/// weaker the higher it is, as Android has them. Their weight holds the tone's strength.
+pub(crate) fn ambient_casts(scene: &Scene, receiver: &Receiver) -> Result<Vec<Cast>> {
+    Ok(ambient_casters(scene, receiver)?
+        .iter()
+        .map(Casters::cast)
+        .collect())
+}
+
+/// Whether any shadow may reach a receiver. No shadow is built for it.
+pub(crate) fn is_shaded(scene: &Scene, receiver: &Receiver) -> Result<bool> {
+    Ok(!key_casters(scene, receiver)?.is_empty() || !ambient_casters(scene, receiver)?.is_empty())
+}
+
+fn key_casters<'a>(scene: &'a Scene, receiver: &Receiver) -> Result<Vec<Casters<'a>>> {
+    casters(scene, receiver, |elevation| {
         Ok((
             scene.light().projection(elevation, receiver.elevation)?,
             1.0,
@@ -77,25 +114,23 @@ pub(crate) fn key_casts(scene: &Scene, receiver: &Receiver) -> Result<Vec<Cast>>
     })
 }
 
-/// The ambient shadows on a receiver: the caster's own outline, blurred by half its height over the receiver, and the
-/// weaker the higher it is, as Android has them. Their weight holds the tone's strength.
-pub(crate) fn ambient_casts(scene: &Scene, receiver: &Receiver) -> Result<Vec<Cast>> {
+fn ambient_casters<'a>(scene: &'a Scene, receiver: &Receiver) -> Result<Vec<Casters<'a>>> {
     let tone = scene.tone();
     if tone.ambient() == 0.0 {
         return Ok(Vec::new());
     }
-    casts(scene, receiver, |elevation| {
+    casters(scene, receiver, |elevation| {
         let height = f64::from(elevation) - f64::from(receiver.elevation);
         Ok((Projection::in_place(height / 2.0), tone.ambient_at(height)))
     })
 }
 
-fn casts(
-    scene: &Scene,
+fn casters<'a>(
+    scene: &'a Scene,
     receiver: &Receiver,
     project: impl Fn(f32) -> Result<(Projection, f64)>,
-) -> Result<Vec<Cast>> {
-    let mut casts = Vec::new();
+) -> Result<Vec<Casters<'a>>> {
+    let mut casters = Vec::new();
     let above: Vec<&Surface> = scene
         .paint_order()
         .into_iter()
@@ -108,19 +143,19 @@ fn casts(
             .iter()
             .filter(|surface| receiver.meets(surface.shape(), &projection))
             .partition(|surface| surface.is_opaque());
-        if !opaque.is_empty() {
-            let shapes: Vec<&Shape> = opaque.iter().map(|surface| surface.shape()).collect();
-            casts.push(Cast {
-                shadow: Shadow::project(&shapes, &projection),
+        let shapes: Vec<&Shape> = opaque.iter().map(|surface| surface.shape()).collect();
+        if !shapes.is_empty() {
+            casters.push(Casters {
+                shapes,
+                projection,
                 weight: strength,
             });
         }
-        for surface in translucent {
-            casts.push(Cast {
-                shadow: Shadow::project(&[surface.shape()], &projection),
-                weight: strength * f64::from(surface.weight()),
-            });
-        }
+        casters.extend(translucent.into_iter().map(|surface| Casters {
+            shapes: vec![surface.shape()],
+            projection,
+            weight: strength * f64::from(surface.weight()),
+        }));
     }
-    Ok(casts)
+    Ok(casters)
 }

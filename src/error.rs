@@ -12,6 +12,9 @@ pub const MAX_PIXELS: u64 = 1 << 25;
 /// A path may not have more segments, and a polygon not more points, than this.
 pub const MAX_SEGMENTS: usize = 1 << 20;
 
+/// A scene file may not be longer than this, in bytes.
+pub const MAX_SCENE_LENGTH: usize = 1 << 28;
+
 /// The result of whatever can refuse its input.
 pub type Result<T, E = Error> = core::result::Result<T, E>;
 

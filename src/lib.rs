@@ -103,7 +103,7 @@ mod tone;
 pub use compose::DensityMap;
 #[cfg(feature = "raster")]
 pub use compose::Renderer;
-pub use error::{Error, MAX_COORDINATE, MAX_PIXELS, MAX_SEGMENTS, Result};
+pub use error::{Error, MAX_COORDINATE, MAX_PIXELS, MAX_SCENE_LENGTH, MAX_SEGMENTS, Result};
 pub use grid::Grid;
 pub use light::Light;
 pub use mesh::{MeshOptions, MeshVertex, Profile, ShadowMesh, meshes_to_svg};

@@ -152,11 +152,11 @@ impl Shadow {
         let levels = options.tolerance.as_levels();
         let radius = self.radius();
         let facet = self.extent() * FACET;
-        let flat = flatness(FLATTENING_SHARE * levels, radius, 0.0).max(if radius == 0.0 {
+        let flat = if radius == 0.0 {
             facet
         } else {
-            0.0
-        });
+            flatness(FLATTENING_SHARE * levels, radius, 0.0)
+        };
         let outline = self.outline(flat);
         let Some((min, max)) = outline.bounds() else {
             return ShadowMesh::empty();

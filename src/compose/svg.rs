@@ -8,7 +8,7 @@ use std::borrow::Cow;
 
 use glam::DVec2;
 
-use super::{Cast, Receiver, ambient_casts, key_casts};
+use super::{Cast, Receiver, ambient_casts, is_shaded, key_casts};
 use crate::density::{averaged_side, flatness};
 use crate::error::Result;
 use crate::scene::{Scene, Surface};
@@ -19,8 +19,8 @@ use crate::tone::Color;
 
 impl Scene {
     /// The scene as an SVG picture of the same size and the same look as the PNG: each shadow within `tolerance` of the
-    /// exact one, where it is wide against a pixel, and the rounding of what shows it. Coordinates have fixed decimals and everything has its place, so that the
-    /// text can be a snapshot.
+    /// exact one, where it is wide against a pixel, and the rounding of what shows it. Coordinates have fixed decimals and
+    /// everything has its place, so that the text can be a snapshot.
     ///
     /// # Errors
     /// None that the constructors let pass.
@@ -76,9 +76,7 @@ impl Writer<'_> {
         let Color { r, g, b, .. } = surface.fill();
         let fill = Color::rgb(r, g, b);
         let weight = number(f64::from(surface.weight()), 4);
-        let is_shaded = !key_casts(self.scene, receiver)?.is_empty()
-            || !ambient_casts(self.scene, receiver)?.is_empty();
-        let level = if is_shaded {
+        let level = if is_shaded(self.scene, receiver)? {
             self.level(receiver)?
         } else {
             None

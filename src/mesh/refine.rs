@@ -389,9 +389,7 @@ impl Refinement {
         error += rounding * FRAC_2_PI / self.field.radius();
         mesh.error_levels = if self.broken { 255.0 } else { error * 255.0 };
         mesh.complete &= !self.broken;
-        let position =
-            |index: u32| DVec2::from(mesh.vertices[index as usize].position.map(f64::from));
-        match umbra::fill(&loops, |_| None, position) {
+        match umbra::fill(&loops, |_| None) {
             Some(filled) => triangles.extend(filled),
             None => triangles.extend(self.faces(Region::Umbra).iter().map(corners)),
         }

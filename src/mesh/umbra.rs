@@ -23,8 +23,7 @@ pub(super) struct LoopVertex {
 /// lines of the loops cross in that precision `extra` gives an index. Without one, or should lyon fail, there are none.
 pub(super) fn fill(
     loops: &[Vec<LoopVertex>],
-    extra: impl FnMut([f32; 2]) -> Option<u32>,
-    position: impl Fn(u32) -> DVec2,
+    mut extra: impl FnMut([f32; 2]) -> Option<u32>,
 ) -> Option<Vec<[u32; 3]>> {
     let mut builder = Path::builder();
     let mut own: HashMap<EndpointId, u32> = HashMap::new();
@@ -51,82 +50,53 @@ pub(super) fn fill(
     FillTessellator::new()
         .tessellate_with_ids(path.id_iter(), &path, None, &options, &mut output)
         .ok()?;
-    let mut extra = extra;
     let found: Option<Vec<u32>> = buffers
         .vertices
         .iter()
         .map(|&(found, position)| found.or_else(|| extra(position)))
         .collect();
     let found = found?;
-    let mut triangles: Vec<[u32; 3]> = buffers
-        .indices
-        .chunks_exact(3)
-        .map(|corners| [0, 1, 2].map(|i: usize| found[corners[i] as usize]))
-        .collect();
     // All of lyon's triangles turn the same way: together they tell which, where one without area cannot.
-    let turn = |corners: &[u32; 3]| {
-        let [a, b, c] = corners.map(&position);
-        (b - a).perp_dot(c - a)
+    let triangles = buffers.indices.chunks_exact(3);
+    let turn = |corners: &[u32]| {
+        let at = |i: usize| DVec2::from(buffers.vertices[corners[i] as usize].1.map(f64::from));
+        (at(1) - at(0)).perp_dot(at(2) - at(0))
     };
-    if triangles.iter().map(turn).sum::<f64>() < 0.0 {
-        for triangle in &mut triangles {
-            triangle.swap(1, 2);
-        }
-    }
-    Some(triangles)
+    let order = if triangles.clone().map(turn).sum::<f64>() < 0.0 {
+        [0, 2, 1]
+    } else {
+        [0, 1, 2]
+    };
+    Some(
+        triangles
+            .map(|corners| order.map(|i: usize| found[corners[i] as usize]))
+            .collect(),
+    )
 }
 
 /// A mesh of nothing but an umbra.
 pub(super) fn mesh(loops: &[Vec<DVec2>], center: DVec2) -> ShadowMesh {
     let mut mesh = ShadowMesh::empty();
-    let mut index = 0;
+    let mut add = |position: DVec2| {
+        mesh.vertices.push(MeshVertex {
+            position: (position + center).as_vec2().to_array(),
+            density: 1.0,
+        });
+        mesh.vertices.len() as u32 - 1
+    };
     let loops: Vec<Vec<LoopVertex>> = loops
         .iter()
         .map(|points| {
-            points
-                .iter()
-                .map(|&position| {
-                    mesh.vertices.push(MeshVertex {
-                        position: (position + center).as_vec2().to_array(),
-                        density: 1.0,
-                    });
-                    index += 1;
-                    LoopVertex {
-                        position,
-                        index: index - 1,
-                    }
-                })
-                .collect()
+            let vertex = |&position: &DVec2| LoopVertex {
+                position,
+                index: add(position),
+            };
+            points.iter().map(vertex).collect()
         })
         .collect();
-    let place = |position: DVec2| (position + center).as_vec2().to_array();
-    let positions: Vec<DVec2> = mesh
-        .vertices
-        .iter()
-        .map(|v| DVec2::from(v.position.map(f64::from)))
-        .collect();
-    let mut crossings = Vec::new();
-    let first = positions.len();
-    let triangles = fill(
-        &loops,
-        |position| {
-            crossings.push(place(DVec2::from(position.map(f64::from))));
-            Some((first + crossings.len() - 1) as u32)
-        },
-        // The crossings' triangles are few: the others tell how lyon turns.
-        |index| {
-            positions
-                .get(index as usize)
-                .copied()
-                .unwrap_or(positions[0])
-        },
-    );
-    mesh.vertices
-        .extend(crossings.into_iter().map(|position| MeshVertex {
-            position,
-            density: 1.0,
-        }));
-    match triangles {
+    match fill(&loops, |position| {
+        Some(add(DVec2::from(position.map(f64::from))))
+    }) {
         Some(triangles) => mesh.indices = settle(&mesh.vertices, triangles),
         None => {
             // The loops are finite and few enough, so lyon has no reason; but a mesh without its umbra must say so.

@@ -4,14 +4,11 @@ use serde::{Deserialize, Deserializer};
 use serde_json::value::RawValue;
 
 use super::{Scene, Surface};
-use crate::error::{Error, Result};
+use crate::error::{Error, MAX_SCENE_LENGTH, Result};
 use crate::light::Light;
 use crate::path::{FillRule, Path};
 use crate::shape::{CornerRadii, Shape};
 use crate::tone::{Color, Tone};
-
-/// A scene file may not be longer than this, in bytes.
-const MAX_LENGTH: usize = 1 << 28;
 
 /// A scene may not have more surfaces than this.
 const MAX_SURFACES: usize = 1 << 16;
@@ -131,8 +128,8 @@ impl Scene {
     /// [`Error::Scene`] with line, column and field.
     pub fn from_json(text: &str) -> Result<Self> {
         let whole = Part { text, part: text };
-        if text.len() > MAX_LENGTH {
-            let reason = format!("{} bytes: at most {MAX_LENGTH} are read", text.len());
+        if text.len() > MAX_SCENE_LENGTH {
+            let reason = format!("{} bytes: at most {MAX_SCENE_LENGTH} are read", text.len());
             return Err(whole.refuse("scene", &reason));
         }
         let fields: SceneFields<'_> = whole.read_object("scene")?;

@@ -13,7 +13,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 use penumbral::plan::Method;
-use penumbral::{Scene, Tolerance};
+use penumbral::{MAX_SCENE_LENGTH, Scene, Tolerance};
 
 /// Shadows of material-style layered surfaces that state how wrong they may be, and keep to it.
 #[derive(Parser)]
@@ -95,9 +95,6 @@ fn tolerance(text: &str) -> Result<Tolerance, String> {
     Tolerance::levels(levels).map_err(|error| error.to_string())
 }
 
-/// Scenes of up to 256 MiB are read.
-const MAX_SCENE_LENGTH: u64 = 1 << 28;
-
 /// What went wrong, in one line.
 type Failure = String;
 
@@ -136,7 +133,10 @@ fn read_scene(path: &Path) -> Result<Scene, Failure> {
     // One byte more than is read tells a file that is too long, however long it is.
     let mut bytes = Vec::new();
     File::open(path)
-        .and_then(|file| file.take(MAX_SCENE_LENGTH + 1).read_to_end(&mut bytes))
+        .and_then(|file| {
+            file.take(MAX_SCENE_LENGTH as u64 + 1)
+                .read_to_end(&mut bytes)
+        })
         .map_err(|error| format!("{}: {error}", path.display()))?;
     let text = String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
