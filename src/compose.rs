@@ -10,7 +10,7 @@ mod ground;
 mod raster;
 mod svg;
 
-pub use ground::DensityMap;
+pub use ground::{DensityMap, GroundShadows};
 #[cfg(feature = "raster")]
 pub use raster::Renderer;
 
@@ -23,6 +23,7 @@ use crate::shadow::Shadow;
 use crate::shape::Shape;
 
 /// One shadow on one receiver, and the part of the light that its casters hold back where they hide it.
+#[derive(Debug)]
 pub(crate) struct Cast {
     pub(crate) shadow: Shadow,
     pub(crate) weight: f64,

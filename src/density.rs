@@ -1,11 +1,31 @@
 //! Densities: at a point, and on a grid of pixels by one method a file.
 
 mod area;
+pub(crate) mod blend;
+pub(crate) mod circle;
+pub(crate) mod direct;
 pub(crate) mod exact;
 mod field;
+mod frame;
+pub(crate) mod grid;
+pub(crate) mod nine_patch;
 mod quadrature;
+pub(crate) mod rounded;
+pub(crate) mod rows;
+mod sampling;
 
 use core::f64::consts::FRAC_PI_2;
+use core::ops::Range;
+
+use fearless_simd::dispatch;
+
+use self::frame::Frame;
+use crate::grid::Grid;
+use crate::hidden::Hidden;
+use crate::plan::{self, Method};
+use crate::scratch::Scratch;
+use crate::shadow::Shadow;
+use crate::tolerance::Tolerance;
 
 pub(crate) use area::at_point;
 pub(crate) use field::Field;
@@ -13,15 +33,125 @@ pub(crate) use field::Field;
 /// How far flattening may move the density of `exact`, in levels.
 pub(crate) const EXACT_SHARE: f64 = 0.02;
 
-/// Takes the densities that a method computes, pixel by pixel; those it is not given are 0.
-pub(crate) trait DensitySink {
-    /// Whether the density of pixel (x, y) will be looked at.
-    fn wants(&self, _x: u32, _y: u32) -> bool {
-        true
+/// How a shadow is drawn on pixels.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct PixelOptions<'a> {
+    /// How wrong a pixel may be, before it is rounded to 8 bits.
+    pub tolerance: Tolerance,
+    /// The method, or none to leave the choice to the plan.
+    pub method: Option<Method>,
+    /// Whether the last rounding to 8 bits is spread by an ordered pattern, so that a wide and faint penumbra shows no
+    /// bands: then it is wrong by up to one of its steps rather than half.
+    pub dither: bool,
+    /// Pixels that need not be drawn.
+    pub hidden: Option<&'a Hidden>,
+}
+
+/// Takes the densities that a method computes; those it is not given are 0. What it is given of a pixel more than once, by
+/// neighbouring parts of a shadow, adds up.
+pub(crate) trait Sink {
+    /// One density for some columns of row `y`.
+    fn constant(&mut self, y: u32, columns: Range<u32>, density: f32);
+
+    /// The densities of row `y` from column `first` on.
+    fn values(&mut self, y: u32, first: u32, densities: &[f32]);
+}
+
+/// Calls `put` for each pixel that is given a density.
+pub(crate) struct Each<'a, T, F> {
+    pub(crate) pixels: &'a mut [T],
+    pub(crate) stride: usize,
+    pub(crate) put: F,
+}
+
+impl<T, F: FnMut(&mut T, f32)> Sink for Each<'_, T, F> {
+    #[inline(always)]
+    fn constant(&mut self, y: u32, columns: Range<u32>, density: f32) {
+        let start = y as usize * self.stride;
+        for pixel in &mut self.pixels[start + columns.start as usize..start + columns.end as usize]
+        {
+            (self.put)(pixel, density);
+        }
     }
 
-    /// The density of pixel (x, y), given at most once.
-    fn put(&mut self, x: u32, y: u32, density: f32);
+    #[inline(always)]
+    fn values(&mut self, y: u32, first: u32, densities: &[f32]) {
+        let start = y as usize * self.stride + first as usize;
+        for (pixel, density) in self.pixels[start..].iter_mut().zip(densities) {
+            (self.put)(pixel, *density);
+        }
+    }
+}
+
+/// Gives `sink` the density of every pixel of the grid that is in the shadow and not hidden.
+pub(crate) fn draw(
+    shadow: &Shadow,
+    grid: &Grid,
+    options: &PixelOptions<'_>,
+    scratch: &mut Scratch,
+    sink: &mut dyn Sink,
+) {
+    for part in shadow.parts(grid.pixels_per_unit()) {
+        draw_part(part, grid, options, scratch, sink);
+    }
+}
+
+fn draw_part(
+    shadow: &Shadow,
+    grid: &Grid,
+    options: &PixelOptions<'_>,
+    scratch: &mut Scratch,
+    sink: &mut dyn Sink,
+) {
+    let per_unit = grid.pixels_per_unit();
+    let pixels = plan::Target::Pixels { per_unit };
+    let method = options
+        .method
+        .unwrap_or_else(|| plan::choose(shadow, options.tolerance, pixels).method);
+    let level = scratch.level();
+    match method {
+        Method::Exact => exact::fill(shadow, grid, options.hidden, scratch, sink),
+        Method::Mesh => {
+            let mesh = shadow.mesh(options.tolerance);
+            mesh.scan_convert(grid, options.hidden, sink);
+        }
+        Method::NinePatch if let Some(rounded) = nine_patch::suited(shadow, per_unit) => {
+            let radius = shadow.radius() * per_unit;
+            if rounded.circle().is_some() {
+                let outline = shadow.exact_outline();
+                dispatch!(level, simd => circle::fill(simd, outline, radius, grid, options, scratch, sink));
+            } else {
+                dispatch!(level, simd => {
+                    nine_patch::fill(simd, &rounded, radius, grid, options, scratch, sink);
+                });
+            }
+        }
+        Method::Direct | Method::Grid | Method::NinePatch => {
+            let coarse = method == Method::Grid;
+            dispatch!(level, simd => direct::fill(simd, shadow, grid, options, scratch, coarse, sink));
+        }
+    }
+}
+
+/// Puts the parts of a row's `columns` that are seen into `seen`, in the frame's pixels.
+fn seen_columns(
+    hidden: Option<&Hidden>,
+    row: u32,
+    frame: &Frame,
+    columns: &Range<i64>,
+    seen: &mut Vec<Range<i64>>,
+) {
+    seen.clear();
+    let origin = frame.first[0];
+    match hidden {
+        Some(hidden) => {
+            let on_grid = (columns.start - origin) as u32..(columns.end - origin) as u32;
+            hidden.seen(row, on_grid, |part| {
+                seen.push(origin + i64::from(part.start)..origin + i64::from(part.end));
+            });
+        }
+        None => seen.push(columns.clone()),
+    }
 }
 
 /// How far from a curve its chords may be to move no density by more than `levels`: a strip of that width along a disc's

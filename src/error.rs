@@ -22,6 +22,12 @@ pub type Result<T, E = Error> = core::result::Result<T, E>;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
+    /// Something was made for other pixels than those to be drawn.
+    #[error("{field} was made for another grid: make it for the grid that is drawn")]
+    OtherGrid {
+        /// What was made for them.
+        field: &'static str,
+    },
     /// A number is NaN or infinite.
     #[error("{field} is {}: give a finite number", Shown(*value))]
     NotFinite {

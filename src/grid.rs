@@ -103,6 +103,17 @@ impl Grid {
         self.corner
     }
 
+    /// Whether another grid has the same pixels, in whatever buffer.
+    pub(crate) fn has_pixels_of(&self, other: &Self) -> bool {
+        let pixels = |grid: &Self| (grid.corner, grid.width, grid.height, grid.pixels_per_unit);
+        pixels(self) == pixels(other)
+    }
+
+    /// The column and row of the first pixel among those of the plane, as far as a pattern of 8 needs them.
+    pub(crate) fn pattern(&self) -> [u32; 2] {
+        [self.corner.x, self.corner.y].map(|v| (v.floor() as i64).rem_euclid(8) as u32)
+    }
+
     /// The part of the grid from column and row `first` to before `end`, in a buffer of its own.
     #[cfg(feature = "raster")]
     pub(crate) fn window(&self, first: [u32; 2], end: [u32; 2]) -> Self {

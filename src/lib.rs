@@ -53,7 +53,7 @@
 //! | `shape.rs`, `path.rs`, `svg_path.rs`, `convert.rs` | [`Shape`], [`Path`]: what casters look like, and where they come from |
 //! | `outline.rs`, `outline/` | loops of lines and arcs that never cross; fill rules; cutting to a box |
 //! | `shadow.rs` | [`Shadow`]: bounds, density at a point, coverage |
-//! | `density.rs`, `density/` | densities: the closed form, on points and on pixels |
+//! | `density.rs`, `density/` | densities: the closed form at points, and on pixels by a method a file; bytes |
 //! | `mesh.rs`, `mesh/` | [`ShadowMesh`]: tangents, triangulation, refinement, Gouraud rasterisation |
 //! | `plan.rs` | [`plan::choose`]: the cheapest method within a tolerance |
 //! | `scene.rs`, `scene/json.rs` | [`Scene`], [`Surface`], and their JSON format |
@@ -61,7 +61,8 @@
 //! | `tone.rs` | [`Tone`], [`Color`]: how density becomes paint |
 //! | `compose.rs`, `compose/` | who casts on whom; pictures and SVG |
 //! | `svg.rs` | writing SVG |
-//! | `grid.rs`, `scratch.rs`, `error.rs` | [`Grid`], [`Scratch`], [`Error`] |
+//! | `grid.rs`, `hidden.rs`, `paint.rs` | [`Grid`], [`Hidden`], [`Paint`]: the pixels, those that nobody sees, what they take |
+//! | `scratch.rs`, `error.rs` | [`Scratch`], [`Error`] |
 //! | `bin/penumbral` | the command line |
 //!
 //! # Features
@@ -85,9 +86,11 @@ mod convert;
 mod density;
 mod error;
 mod grid;
+mod hidden;
 mod light;
 mod mesh;
 mod outline;
+mod paint;
 mod path;
 pub mod plan;
 mod scene;
@@ -100,13 +103,16 @@ mod svg_path;
 mod tolerance;
 mod tone;
 
-pub use compose::DensityMap;
 #[cfg(feature = "raster")]
 pub use compose::Renderer;
+pub use compose::{DensityMap, GroundShadows};
+pub use density::PixelOptions;
 pub use error::{Error, MAX_COORDINATE, MAX_PIXELS, MAX_SCENE_LENGTH, MAX_SEGMENTS, Result};
 pub use grid::Grid;
+pub use hidden::Hidden;
 pub use light::Light;
 pub use mesh::{MeshOptions, MeshVertex, Profile, ShadowMesh, meshes_to_svg};
+pub use paint::Paint;
 pub use path::{FillRule, Path};
 pub use scene::{Scene, Surface};
 pub use scratch::Scratch;

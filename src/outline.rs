@@ -3,6 +3,7 @@
 //! Every number of the crate comes from an outline by sums over its edges, so all that it must promise is
 //! orientation: the area lies to the left of each edge where y points up, so that areas come out positive.
 
+mod chords;
 mod clip;
 mod resolve;
 
@@ -11,6 +12,7 @@ use core::f64::consts::{PI, TAU};
 use glam::DVec2;
 use libm::{atan2, cos, sin};
 
+pub(crate) use chords::Fineness;
 pub(crate) use clip::clip_to_box;
 pub(crate) use resolve::{Winding, resolve, resolve_loops};
 
@@ -70,6 +72,14 @@ impl Arc {
 
     pub(crate) fn at(&self, angle: f64) -> DVec2 {
         self.center + self.radius * DVec2::new(cos(angle), sin(angle))
+    }
+
+    /// Whether the direction from the centre is one of the arc's.
+    pub(crate) fn has(&self, direction: DVec2) -> bool {
+        let turn = if self.sweep < 0.0 { -1.0 } else { 1.0 };
+        let offset = wrap(turn * (atan2(direction.y, direction.x) - self.start));
+        let length = self.sweep.abs();
+        (0.0..=length).contains(&offset) || offset + TAU <= length
     }
 
     /// Gives `piece` the parts of the arc in order, each with whether its angles are within `half_width` of `middle`.
@@ -139,7 +149,7 @@ impl Edge {
         }
     }
 
-    fn reversed(&self) -> Self {
+    pub(crate) fn reversed(&self) -> Self {
         let turned = |line: &Line| Line {
             from: line.to,
             to: line.from,
@@ -197,13 +207,12 @@ impl Outline {
             let mut edges = Vec::with_capacity(contour.segments.len() + 1);
             let mut from = contour.start;
             for segment in &contour.segments {
-                let (edge, to) = match *segment {
-                    Segment::Line(to) => (Edge::Line(Line { from, to }), to),
-                    Segment::Arc(arc) => (Edge::Arc(circular(from, &arc)?), arc.to),
+                match *segment {
+                    Segment::Line(to) => edges.push(Edge::Line(Line { from, to })),
+                    Segment::Arc(arc) => edges.extend(circular(from, &arc)?.map(Edge::Arc)),
                     Segment::Quad(..) | Segment::Cubic(..) => return None,
-                };
-                edges.push(edge);
-                from = to;
+                }
+                from = segment.end();
             }
             if from != contour.start {
                 edges.push(Edge::Line(Line {
@@ -265,6 +274,38 @@ impl Outline {
         self
     }
 
+    /// Whether it is one loop that turns one way only, and once.
+    pub(crate) fn is_convex(&self) -> bool {
+        let [edges] = self.loops.as_slice() else {
+            return false;
+        };
+        let directions = |edge: &Edge| match edge {
+            Edge::Line(line) | Edge::Border(line) => {
+                let along = line.to - line.from;
+                [along, along]
+            }
+            Edge::Arc(arc) => [arc.from, arc.to].map(|end| (end - arc.center).perp()),
+        };
+        let mut turned = 0.0;
+        for (edge, next) in edges.iter().zip(edges.iter().cycle().skip(1)) {
+            if let Edge::Arc(arc) = edge {
+                if arc.sweep < 0.0 {
+                    return false;
+                }
+                turned += arc.sweep;
+            }
+            let (before, after) = (directions(edge)[1], directions(next)[0]);
+            let turn = atan2(before.perp_dot(after), before.dot(after));
+            // An arc's ends are rounded, and so are the directions there.
+            const ROUNDING: f64 = 1e-9;
+            if turn < -ROUNDING {
+                return false;
+            }
+            turned += turn;
+        }
+        turned < 1.5 * TAU
+    }
+
     /// The outline moved by `offset`.
     pub(crate) fn moved(&self, offset: DVec2) -> Self {
         let loops = self.loops.iter();
@@ -300,29 +341,7 @@ impl Outline {
 
     /// The smallest box that holds the outline.
     pub(crate) fn bounds(&self) -> Option<(DVec2, DVec2)> {
-        let mut bounds: Option<(DVec2, DVec2)> = None;
-        let mut include = |p: DVec2| {
-            bounds = Some(bounds.map_or((p, p), |(min, max)| (min.min(p), max.max(p))));
-        };
-        for edge in self.edges() {
-            include(edge.from());
-            if let Edge::Arc(arc) = edge {
-                for (quarter, direction) in [DVec2::X, DVec2::Y, DVec2::NEG_X, DVec2::NEG_Y]
-                    .into_iter()
-                    .enumerate()
-                {
-                    let angle = quarter as f64 * (PI / 2.0);
-                    let turn = if arc.sweep < 0.0 { -1.0 } else { 1.0 };
-                    let offset = wrap(turn * (angle - arc.start));
-                    if (offset >= 0.0 && offset <= arc.sweep.abs())
-                        || offset + TAU <= arc.sweep.abs()
-                    {
-                        include(arc.center + arc.radius * direction);
-                    }
-                }
-            }
-        }
-        bounds
+        bounds(self.edges())
     }
 
     /// The vertices of each loop with the arcs cut within `flatness`.
@@ -398,8 +417,29 @@ fn is_convex(polygon: &[DVec2]) -> bool {
     (turns_left || turns_right) && changes <= 2
 }
 
-/// The arc as part of a circle, when its half diameters are equal and perpendicular.
-fn circular(from: DVec2, arc: &EllipseArc) -> Option<Arc> {
+/// The smallest box that holds edges.
+pub(crate) fn bounds<'a>(edges: impl Iterator<Item = &'a Edge>) -> Option<(DVec2, DVec2)> {
+    let mut bounds: Option<(DVec2, DVec2)> = None;
+    let mut include = |p: DVec2| {
+        bounds = Some(bounds.map_or((p, p), |(min, max)| (min.min(p), max.max(p))));
+    };
+    for edge in edges {
+        include(edge.from());
+        if let Edge::Arc(arc) = edge {
+            for direction in [DVec2::X, DVec2::Y, DVec2::NEG_X, DVec2::NEG_Y] {
+                if arc.has(direction) {
+                    include(arc.center + arc.radius * direction);
+                }
+            }
+        }
+    }
+    bounds
+}
+
+/// The arc as parts of a circle of at most a half turn, when its half diameters are equal and perpendicular.
+fn circular(from: DVec2, arc: &EllipseArc) -> Option<impl Iterator<Item = Arc>> {
+    // Rounding may make a half circle a little longer, and two arcs of it would be no better.
+    const HALF_TURN: f64 = PI + 1e-9;
     let radius = arc.u.length();
     // Rounding of an affine map leaves some 1e-16; a millionth of that in levels.
     let slack = 1e-12 * radius;
@@ -411,14 +451,33 @@ fn circular(from: DVec2, arc: &EllipseArc) -> Option<Arc> {
     if (arc.v - turn * arc.u.perp()).length() > slack {
         return None;
     }
-    Some(Arc {
+    let whole = Arc {
         center: arc.center,
         radius,
         start: atan2(arc.u.y, arc.u.x) + turn * arc.start,
         sweep: turn * arc.sweep,
         from,
         to: arc.to,
-    })
+    };
+    let parts = if whole.sweep.abs() <= HALF_TURN {
+        [Some(whole), None]
+    } else {
+        let sweep = whole.sweep / 2.0;
+        let middle = whole.at(whole.start + sweep);
+        let first = Arc {
+            sweep,
+            to: middle,
+            ..whole
+        };
+        let second = Arc {
+            start: whole.start + sweep,
+            sweep,
+            from: middle,
+            ..whole
+        };
+        [Some(first), Some(second)]
+    };
+    Some(parts.into_iter().flatten())
 }
 
 #[cfg(test)]

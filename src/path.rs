@@ -1,10 +1,14 @@
 //! Paths: contours of lines, quadratics, cubics and elliptical arcs, and their flattening.
 
+mod parts;
+
 use core::f64::consts::{PI, TAU};
 
 use glam::{DAffine2, DVec2};
 use libm::{acos, atan2, cos, sin, sqrt};
 use lyon::geom::{CubicBezierSegment, Point, QuadraticBezierSegment};
+
+pub(crate) use parts::{Curve, Part};
 
 use crate::error::{self, Error, MAX_SEGMENTS, Result};
 
@@ -273,7 +277,7 @@ impl Contour {
 }
 
 impl Segment {
-    fn end(&self) -> DVec2 {
+    pub(crate) fn end(&self) -> DVec2 {
         match *self {
             Self::Line(to) | Self::Quad(_, to) | Self::Cubic(_, _, to) => to,
             Self::Arc(arc) => arc.to,

@@ -3,6 +3,7 @@
 use core::fmt;
 use core::str::FromStr;
 
+use crate::density::{direct, grid, nine_patch};
 use crate::shadow::Shadow;
 use crate::tolerance::Tolerance;
 
@@ -10,18 +11,27 @@ use crate::tolerance::Tolerance;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Method {
-    /// The closed form, pixel by pixel.
+    /// The closed form, pixel by pixel, in double precision.
     Exact,
+    /// The closed form, row by row, in single precision.
+    Direct,
+    /// The closed form on a lattice coarser than the pixels, interpolated.
+    Grid,
+    /// A rounded rectangle by columns and corners, these interpolated from a table.
+    NinePatch,
     /// Triangles, interpolated; on pixels one sample at each centre.
     Mesh,
 }
 
 /// What a shadow is drawn for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Target {
-    /// A grid of pixels with so many a scene unit.
-    Pixels,
+    /// A grid of pixels.
+    Pixels {
+        /// Pixels a scene unit.
+        per_unit: f64,
+    },
     /// Triangles.
     Triangles,
 }
@@ -35,26 +45,89 @@ pub struct Choice {
     pub why: &'static str,
 }
 
-/// The method for a shadow within a tolerance. For pixels there is one so far, which keeps every tolerance.
+/// The method for a shadow within a tolerance.
 #[must_use]
-pub fn choose(shadow: &Shadow, _tolerance: Tolerance, target: Target) -> Choice {
+pub fn choose(shadow: &Shadow, tolerance: Tolerance, target: Target) -> Choice {
     let (method, why) = match target {
         Target::Triangles => (Method::Mesh, "triangles are asked for"),
-        Target::Pixels if shadow.radius() == 0.0 => {
-            (Method::Exact, "a hard edge is coverage in closed form")
-        }
-        Target::Pixels => (
-            Method::Exact,
-            "the closed form keeps every tolerance; only penumbra pixels cost anything",
-        ),
+        Target::Pixels { per_unit } => on_pixels(shadow, tolerance.as_levels(), per_unit),
     };
     Choice { method, why }
 }
+
+fn on_pixels(shadow: &Shadow, levels: f64, per_unit: f64) -> (Method, &'static str) {
+    let radius = shadow.radius() * per_unit;
+    if radius > 0.0 && radius < 3.0 {
+        return if levels < direct::AVERAGED {
+            (
+                Method::Exact,
+                "so fine a tolerance takes the finest averages over pixels",
+            )
+        } else {
+            (Method::Direct, "the penumbra is about as narrow as a pixel")
+        };
+    }
+    if radius == 0.0 {
+        return (Method::Direct, "a hard edge is coverage in closed form");
+    }
+    if levels < FINEST {
+        return (
+            Method::Direct,
+            "so fine a tolerance leaves nothing to interpolation",
+        );
+    }
+    let few_steps = radius / grid::steps(levels) >= COARSEST_PITCH;
+    let Some(rounded) = nine_patch::suited(shadow, per_unit) else {
+        return if few_steps && shadow.is_intricate(per_unit) {
+            (
+                Method::Grid,
+                "many edges at once: fewer points than pixels are enough",
+            )
+        } else {
+            (
+                Method::Direct,
+                "few edges: its pixels cost less than what would spare them",
+            )
+        };
+    };
+    let size = (rounded.max - rounded.min) * per_unit;
+    let roundest = rounded.radii.into_iter().fold(0.0, f64::max) * per_unit;
+    if rounded.circle().is_some() {
+        (Method::NinePatch, "a circle: one profile along its radius")
+    } else if few_steps && size.min_element() < radius && radius > WIDE {
+        (
+            Method::Grid,
+            "no umbra and a wide penumbra: few points are enough",
+        )
+    } else if roundest <= nine_patch::ROUNDEST * radius {
+        (
+            Method::NinePatch,
+            "a rounded rectangle: its columns and corners are tables",
+        )
+    } else {
+        (
+            Method::Direct,
+            "round corners beside a narrow penumbra: their pixels cost less than a table",
+        )
+    }
+}
+
+/// Tolerances below this, in levels, are kept by the closed form alone.
+const FINEST: f64 = 0.5;
+
+/// A lattice of less than this many pixels from knot to knot spares too little.
+const COARSEST_PITCH: f64 = 1.5;
+
+/// From this penumbra radius on, in pixels, interpolating costs less than adding up corners.
+const WIDE: f64 = 64.0;
 
 impl fmt::Display for Method {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Exact => "exact",
+            Self::Direct => "direct",
+            Self::Grid => "grid",
+            Self::NinePatch => "nine-patch",
             Self::Mesh => "mesh",
         })
     }
@@ -62,7 +135,7 @@ impl fmt::Display for Method {
 
 /// Why a text names no method.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{0:?} is no method: exact or mesh")]
+#[error("{0:?} is no method: exact, direct or mesh")]
 pub struct ParseMethodError(String);
 
 impl FromStr for Method {
@@ -71,6 +144,9 @@ impl FromStr for Method {
     fn from_str(text: &str) -> Result<Self, ParseMethodError> {
         match text {
             "exact" => Ok(Self::Exact),
+            "direct" => Ok(Self::Direct),
+            "grid" => Ok(Self::Grid),
+            "nine-patch" => Ok(Self::NinePatch),
             "mesh" => Ok(Self::Mesh),
             _ => Err(ParseMethodError(text.to_owned())),
         }

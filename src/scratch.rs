@@ -1,13 +1,35 @@
 //! Memory that one drawing leaves to the next.
 
+use core::ops::Range;
+
+use fearless_simd::Level;
+
+use crate::density::circle::Profile;
+use crate::density::grid::GridScratch;
+use crate::density::nine_patch::NinePatchScratch;
+use crate::density::rows::Rows;
 use crate::outline::Edge;
 
 /// Buffers that pixel methods need while they work, kept so that drawing again allocates little or nothing. It holds no
 /// results: any scratch serves any shadow.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Scratch {
+    /// The best SIMD level of this machine. All give the same bits.
+    level: Level,
     /// Lists of edges that are not in use.
     edges: Vec<Vec<Edge>>,
+    pub(crate) rows: Rows,
+    pub(crate) nine_patch: NinePatchScratch,
+    pub(crate) grid: GridScratch,
+    pub(crate) circle: Profile,
+    /// The columns of a row that are to be drawn.
+    pub(crate) wanted: Vec<Range<i64>>,
+}
+
+impl Default for Scratch {
+    fn default() -> Self {
+        Self::at_level(Level::new())
+    }
 }
 
 impl Scratch {
@@ -15,6 +37,22 @@ impl Scratch {
     #[must_use]
     pub fn new() -> Self {
         Self::default()
+    }
+
+    pub(crate) fn at_level(level: Level) -> Self {
+        Self {
+            level,
+            edges: Vec::new(),
+            rows: Rows::default(),
+            nine_patch: NinePatchScratch::default(),
+            grid: GridScratch::default(),
+            circle: Profile::default(),
+            wanted: Vec::new(),
+        }
+    }
+
+    pub(crate) fn level(&self) -> Level {
+        self.level
     }
 
     pub(crate) fn take(&mut self) -> Vec<Edge> {

@@ -9,13 +9,16 @@ use std::sync::OnceLock;
 
 use glam::DVec2;
 
-use crate::density::{self, DensitySink};
-use crate::error::Result;
+use crate::density::blend::{A8, Ink, Layout, Rgba8};
+use crate::density::rounded::Rounded;
+use crate::density::{self, Each, PixelOptions};
+use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::light::Projection;
-use crate::outline::{Outline, Winding, resolve};
+use crate::outline::{Edge, Fineness, Outline, Winding, resolve};
+use crate::paint::Paint;
 use crate::scratch::Scratch;
-use crate::shape::Shape;
+use crate::shape::{Cover, Shape};
 
 /// The shadow of one or more shapes of one elevation on one receiver: everything that a mesh, a picture or a point
 /// query is made from.
@@ -28,7 +31,16 @@ pub struct Shadow {
     curved: Vec<Vec<Shape>>,
     /// The outline as exact as `density_at` promises, made when it is first needed.
     exact: OnceLock<Outline>,
+    /// The outline as a rounded rectangle, if it is one.
+    rounded: Option<Rounded>,
+    /// Shadows of one radius that are this one together and hardly meet; none if it is a single one.
+    parts: Vec<Shadow>,
 }
+
+/// How far outlines reach when they are sorted into parts, over the penumbra radius. Where two such parts meet each is at
+/// the end of its penumbra: their densities there have a product of at most 0.1 level, by which it matters whether they
+/// are added or laid one over the other.
+const REACH: f64 = 0.85;
 
 /// A box from its least to its largest x and y, in scene units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -77,12 +89,11 @@ impl Shadow {
             radius: projection.radius,
             ..Self::default()
         };
-        for group in overlapping(
-            shapes
-                .iter()
-                .map(|shape| shape.borrow().mapped(&affine))
-                .collect(),
-        ) {
+        let boxed = shapes.iter().filter_map(|shape| {
+            let shape = shape.borrow().mapped(&affine);
+            shape.hull().map(|(min, max)| (min, max, shape))
+        });
+        for group in overlapping(boxed.collect()) {
             let outlines: Option<Vec<Outline>> = group.iter().map(Outline::of_simple).collect();
             match outlines {
                 Some(mut outlines) if outlines.len() == 1 => {
@@ -95,26 +106,85 @@ impl Shadow {
                 _ => shadow.curved.push(group),
             }
         }
+        shadow.find_parts();
         shadow
+    }
+
+    /// Loops whose shadows are apart are drawn by what suits each best.
+    fn find_parts(&mut self) {
+        self.rounded = None;
+        self.parts.clear();
+        if !self.curved.is_empty() {
+            return;
+        }
+        self.rounded = Rounded::of(&self.fixed);
+        // A narrow penumbra is averaged over pixels: then parts must be pixels apart.
+        let reach = if self.radius < 3.0 {
+            self.radius + 1.0
+        } else {
+            self.radius * REACH
+        };
+        let boxed = self.fixed.loops.iter().filter_map(|edges| {
+            let outline = Outline {
+                loops: vec![edges.clone()],
+            };
+            let (min, max) = outline.bounds()?;
+            Some((min - reach, max + reach, outline))
+        });
+        let groups = overlapping(boxed.collect());
+        if groups.len() < 2 {
+            return;
+        }
+        self.parts = groups
+            .into_iter()
+            .map(|group| {
+                let loops = group
+                    .into_iter()
+                    .flat_map(|outline| outline.loops)
+                    .collect();
+                let fixed = Outline { loops };
+                Self {
+                    radius: self.radius,
+                    rounded: Rounded::of(&fixed),
+                    fixed,
+                    ..Self::default()
+                }
+            })
+            .collect();
+    }
+
+    /// The shadows that this one is drawn as on pixels of which there are so many a scene unit.
+    pub(crate) fn parts(&self, per_unit: f64) -> &[Self] {
+        if self.parts.is_empty() || per_unit < 1.0 {
+            core::slice::from_ref(self)
+        } else {
+            &self.parts
+        }
     }
 
     /// The same outline seen through another penumbra radius.
     pub(crate) fn with_radius(&self, radius: f64) -> Self {
-        Self {
+        let mut shadow = Self {
             radius,
             fixed: self.fixed.clone(),
             curved: self.curved.clone(),
-            exact: OnceLock::new(),
-        }
+            ..Self::default()
+        };
+        shadow.find_parts();
+        shadow
     }
 
     /// The larger side of a box that holds the outline, in scene units.
     pub(crate) fn extent(&self) -> f64 {
+        self.hull()
+            .map_or(0.0, |(min, max)| (max - min).max_element())
+    }
+
+    /// A box that holds the outline, in scene units.
+    fn hull(&self) -> Option<(DVec2, DVec2)> {
         let curved = self.curved.iter().flatten().filter_map(Shape::hull);
         let hulls = self.fixed.bounds().into_iter().chain(curved);
-        hulls
-            .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
-            .map_or(0.0, |(min, max)| (max - min).max_element())
+        hulls.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
     }
 
     /// The penumbra radius r, in scene units: how far from the outline the penumbra reaches, both ways.
@@ -163,6 +233,70 @@ impl Shadow {
         })
     }
 
+    /// Whether a disc meets many edges at once, where it meets any.
+    pub(crate) fn is_intricate(&self, per_unit: f64) -> bool {
+        // A curve is drawn as about so many lines.
+        const LINES: usize = 24;
+        let curves = self.curved.iter().flatten();
+        let curved: usize = curves
+            .flat_map(|shape| &shape.contours)
+            .map(|contour| contour.segments.len() * LINES)
+            .sum();
+        let (mut lines, mut arcs) = (0, 0);
+        for edge in self.fixed.edges() {
+            match edge {
+                Edge::Arc(_) => arcs += 1,
+                Edge::Line(_) | Edge::Border(_) => lines += 1,
+            }
+        }
+        // An arc costs about as much as two lines, and points off the straight and narrow cost most.
+        let count = (lines + 2 * arcs + curved) as f64;
+        let Some((min, max)) = self.hull() else {
+            return false;
+        };
+        let size = (max - min).max_element() * per_unit;
+        let radius = self.radius * per_unit;
+        count * (1.0 + radius / size) > 24.0 || radius > size / 4.0
+    }
+
+    /// Pushes the outline's edges as they are needed to draw it, loop after loop: on pixels of side `pixel` (scene units)
+    /// no density moves by more than `levels`.
+    ///
+    /// Curves known to be simple take few lines and no memory of their own.
+    pub(crate) fn edges_into(&self, levels: f64, pixel: f64, out: &mut Vec<Edge>) {
+        let simple =
+            |group: &Vec<Shape>| matches!(group.as_slice(), [only] if only.cover == Cover::Simple);
+        if !self.curved.iter().all(simple) {
+            out.extend(self.drawn_outline(levels, pixel).edges());
+            return;
+        }
+        out.extend(self.fixed.edges());
+        let fineness = Fineness::new(levels, self.radius, pixel);
+        for shape in self.curved.iter().flatten() {
+            let first = out.len();
+            for contour in &shape.contours {
+                contour.chords(&fineness, out);
+            }
+            turn_left(&mut out[first..]);
+        }
+    }
+
+    /// The outline for pixels of side `pixel`, as a whole: the exact one, which is kept, unless its lines would be much
+    /// finer than a pixel needs.
+    fn drawn_outline(&self, levels: f64, pixel: f64) -> Cow<'_, Outline> {
+        let needed = density::flatness(levels, self.radius, pixel);
+        if needed > density::flatness(levels, self.radius, 0.0) {
+            self.outline(needed)
+        } else {
+            Cow::Borrowed(self.exact_outline())
+        }
+    }
+
+    /// The outline as a rounded rectangle, if it is one.
+    pub(crate) fn rounded(&self) -> Option<Rounded> {
+        self.rounded
+    }
+
     /// The smallest box outside of which the density is 0, or none for an empty shadow. No density is computed for it.
     #[must_use]
     pub fn bounds(&self) -> Option<Bounds> {
@@ -187,42 +321,132 @@ impl Shadow {
     }
 
     /// Writes the densities on a grid of pixels as 8-bit coverage, 255 where the light's disc is wholly hidden and 0
-    /// outside of the shadow: every pixel of the grid is written, nothing else of the buffer is.
+    /// outside of the shadow: every pixel of the grid is written, nothing else of the buffer is. Within one level, and half
+    /// of one for the rounding.
     ///
     /// # Errors
-    /// [`Error::BufferSize`](crate::Error::BufferSize) when `mask` is shorter than the grid needs.
+    /// [`Error::BufferSize`] when `mask` is shorter than the grid needs.
     pub fn fill_a8(&self, grid: &Grid, mask: &mut [u8], scratch: &mut Scratch) -> Result<()> {
-        grid.check_buffer(mask.len())?;
-        for row in 0..grid.height() {
-            let start = row as usize * grid.stride();
-            mask[start..start + grid.width() as usize].fill(0);
-        }
-        let mut sink = MaskSink {
-            mask,
-            stride: grid.stride(),
-        };
-        density::exact::fill(self, grid, scratch, &mut sink);
+        self.fill_a8_with(grid, mask, &PixelOptions::default(), scratch)
+    }
+
+    /// As [`Shadow::fill_a8`], with options; hidden pixels are 0.
+    ///
+    /// # Errors
+    /// As [`Shadow::fill_a8`], and options for another grid.
+    pub fn fill_a8_with(
+        &self,
+        grid: &Grid,
+        mask: &mut [u8],
+        options: &PixelOptions<'_>,
+        scratch: &mut Scratch,
+    ) -> Result<()> {
+        clear(grid, mask, 0)?;
+        options.check(grid)?;
+        let layout = options.layout(grid);
+        density::draw(self, grid, options, scratch, &mut A8 { mask, layout });
         Ok(())
+    }
+
+    /// Writes the densities on a grid of pixels, from 0 to 1: every pixel of the grid is written, nothing else of the buffer
+    /// is. Hidden pixels are 0.
+    ///
+    /// # Errors
+    /// [`Error::BufferSize`] when `densities` is shorter than the grid needs, and options for another grid.
+    pub fn fill_f32(
+        &self,
+        grid: &Grid,
+        densities: &mut [f32],
+        options: &PixelOptions<'_>,
+        scratch: &mut Scratch,
+    ) -> Result<()> {
+        clear(grid, densities, 0.0)?;
+        options.check(grid)?;
+        let mut sink = Each {
+            pixels: densities,
+            stride: grid.stride(),
+            put: |pixel: &mut f32, density: f32| *pixel = (*pixel + density).min(1.0),
+        };
+        density::draw(self, grid, options, scratch, &mut sink);
+        Ok(())
+    }
+
+    /// Blends the shadow onto premultiplied RGBA8 pixels, source over, in one pass: no mask is made. The grid's stride
+    /// counts pixels, 4 bytes each; pixels outside of the shadow, hidden ones and the rest of the buffer stay as they are.
+    ///
+    /// # Errors
+    /// [`Error::BufferSize`] when `pixels` is shorter than the grid needs, and options for another grid.
+    pub fn blend_rgba8(
+        &self,
+        grid: &Grid,
+        pixels: &mut [u8],
+        paint: &Paint,
+        options: &PixelOptions<'_>,
+        scratch: &mut Scratch,
+    ) -> Result<()> {
+        grid.check_buffer(pixels.len() / 4)?;
+        options.check(grid)?;
+        let mut sink = Rgba8 {
+            level: scratch.level(),
+            pixels,
+            layout: options.layout(grid),
+            ink: Ink::new(paint),
+        };
+        density::draw(self, grid, options, scratch, &mut sink);
+        Ok(())
+    }
+}
+
+/// Sets the grid's pixels in a buffer.
+fn clear<T: Copy>(grid: &Grid, buffer: &mut [T], value: T) -> Result<()> {
+    grid.check_buffer(buffer.len())?;
+    for row in 0..grid.height() as usize {
+        buffer[row * grid.stride()..][..grid.width() as usize].fill(value);
+    }
+    Ok(())
+}
+
+impl PixelOptions<'_> {
+    fn check(&self, grid: &Grid) -> Result<()> {
+        match self.hidden {
+            Some(hidden) if !hidden.grid().has_pixels_of(grid) => Err(Error::OtherGrid {
+                field: "options.hidden",
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    fn layout(&self, grid: &Grid) -> Layout {
+        Layout {
+            stride: grid.stride(),
+            dither: self.dither.then(|| grid.pattern()),
+        }
     }
 }
 
 /// The finest flattening over a shape's extent, 2^-30: some 30,000 chords a curve.
 const FINEST: f64 = 1.0 / 1_073_741_824.0;
 
-struct MaskSink<'a> {
-    mask: &'a mut [u8],
-    stride: usize,
-}
-
-impl DensitySink for MaskSink<'_> {
-    fn put(&mut self, x: u32, y: u32, density: f32) {
-        self.mask[y as usize * self.stride + x as usize] = (density * 255.0 + 0.5) as u8;
-    }
-}
-
 impl Shape {
     fn is_straight(&self) -> bool {
         self.contours.iter().all(crate::path::Contour::is_straight)
+    }
+}
+
+/// Turns the edges of loops round if what they enclose lies on their right.
+fn turn_left(edges: &mut [Edge]) {
+    // Far from the origin the areas would cancel.
+    let origin = edges.first().map_or(DVec2::ZERO, Edge::from);
+    if edges
+        .iter()
+        .map(|edge| edge.double_area(origin))
+        .sum::<f64>()
+        < 0.0
+    {
+        edges.reverse();
+        for edge in edges {
+            *edge = edge.reversed();
+        }
     }
 }
 
@@ -240,22 +464,18 @@ fn unite(outlines: &[Outline], flatness: f64) -> Outline {
     }
 }
 
-/// Sorts shapes into groups, each apart from all others: a group's hulls overlap or touch in a chain.
-fn overlapping(shapes: Vec<Shape>) -> Vec<Vec<Shape>> {
-    let mut open: Vec<(DVec2, DVec2, Vec<Shape>)> = Vec::new();
-    let mut hulled: Vec<(DVec2, DVec2, Shape)> = shapes
-        .into_iter()
-        .filter_map(|shape| shape.hull().map(|(min, max)| (min, max, shape)))
-        .collect();
-    hulled.sort_by(|a, b| {
-        let key = |s: &(DVec2, DVec2, Shape)| (s.0.x, s.0.y);
+/// Sorts boxed items into groups, each apart from all others: a group's boxes overlap or touch in a chain.
+fn overlapping<T>(mut boxed: Vec<(DVec2, DVec2, T)>) -> Vec<Vec<T>> {
+    let mut open: Vec<(DVec2, DVec2, Vec<T>)> = Vec::new();
+    boxed.sort_by(|a, b| {
+        let key = |s: &(DVec2, DVec2, T)| (s.0.x, s.0.y);
         key(a)
             .partial_cmp(&key(b))
             .unwrap_or(core::cmp::Ordering::Equal)
     });
     let mut groups = Vec::new();
-    for (min, max, shape) in hulled {
-        let (mut min, mut max, mut group) = (min, max, vec![shape]);
+    for (min, max, item) in boxed {
+        let (mut min, mut max, mut group) = (min, max, vec![item]);
         let mut index = 0;
         while index < open.len() {
             if open[index].1.x < min.x {
@@ -279,7 +499,7 @@ fn overlapping(shapes: Vec<Shape>) -> Vec<Vec<Shape>> {
 mod tests {
     use super::*;
     use crate::light::Light;
-    use crate::path::FillRule;
+    use crate::path::{FillRule, Path};
 
     #[test]
     fn abutting_rectangles_are_one_outline() {
@@ -356,5 +576,130 @@ mod tests {
         let shadow = light.cast(&twice, 2.0, 0.0).unwrap();
         assert!(shadow.is_empty());
         assert_eq!(shadow.density_at([2.0, 4.0]), 0.0);
+    }
+
+    /// Cubics one after another, from the first point on.
+    fn cubics(from: [f32; 2], curves: &[[f32; 6]]) -> Shape {
+        let mut path = Path::new();
+        path.move_to(from);
+        for &[a, b, c, d, x, y] in curves {
+            path.cubic_to([a, b], [c, d], [x, y]);
+        }
+        Shape::path(&path, FillRule::NonZero).unwrap()
+    }
+
+    fn heart() -> Shape {
+        cubics(
+            [180.0, 280.0],
+            &[
+                [60.0, 200.0, 40.0, 130.0, 70.0, 95.0],
+                [105.0, 55.0, 160.0, 70.0, 180.0, 115.0],
+                [200.0, 70.0, 255.0, 55.0, 290.0, 95.0],
+                [320.0, 130.0, 300.0, 200.0, 180.0, 280.0],
+            ],
+        )
+    }
+
+    /// A letter S with strokes of about 12.
+    fn letter() -> Shape {
+        cubics(
+            [72.0, 26.0],
+            &[
+                [66.0, 12.0, 50.0, 6.0, 36.0, 8.0],
+                [18.0, 10.0, 8.0, 22.0, 10.0, 36.0],
+                [12.0, 50.0, 26.0, 54.0, 40.0, 58.0],
+                [54.0, 62.0, 64.0, 64.0, 64.0, 76.0],
+                [64.0, 86.0, 52.0, 92.0, 40.0, 91.0],
+                [26.0, 90.0, 18.0, 82.0, 14.0, 72.0],
+                [11.0, 74.0, 7.0, 76.0, 4.0, 78.0],
+                [10.0, 94.0, 24.0, 102.0, 40.0, 102.0],
+                [60.0, 102.0, 76.0, 92.0, 76.0, 75.0],
+                [76.0, 56.0, 58.0, 52.0, 44.0, 48.0],
+                [30.0, 44.0, 22.0, 42.0, 22.0, 34.0],
+                [22.0, 24.0, 30.0, 18.0, 40.0, 18.0],
+                [50.0, 18.0, 58.0, 24.0, 62.0, 32.0],
+            ],
+        )
+    }
+
+    fn drawn(shadow: &Shadow, levels: f64) -> Vec<Edge> {
+        let mut edges = Vec::new();
+        shadow.edges_into(levels, 1.0, &mut edges);
+        edges
+    }
+
+    fn area(edges: &[Edge]) -> f64 {
+        let origin = edges[0].from();
+        edges
+            .iter()
+            .map(|edge| edge.double_area(origin))
+            .sum::<f64>()
+            / 2.0
+    }
+
+    #[test]
+    fn few_lines_draw_the_same_densities() {
+        const SIDE: u32 = 20;
+        for (name, shape) in [("heart", heart()), ("letter", letter())] {
+            assert_eq!(shape.cover, Cover::Simple);
+            for radius in [0.5_f32, 2.0, 8.0, 22.0, 60.0] {
+                let light = Light::directional([0.0, 0.0], radius).unwrap();
+                let shadow = light.cast(&shape, 1.0, 0.0).unwrap();
+                let edges = drawn(&shadow, 0.1);
+                let exact = shadow.exact_outline();
+                let (min, max) = exact.bounds().unwrap();
+                let radius = f64::from(radius);
+                let mut worst: f64 = 0.0;
+                for index in 0..SIDE * SIDE {
+                    let share = DVec2::new(f64::from(index % SIDE), f64::from(index / SIDE));
+                    let share = (share + 0.5) / f64::from(SIDE);
+                    let point = min - radius + (max - min + 2.0 * radius) * share;
+                    let density = density::at_point(edges.iter(), point, radius);
+                    let error = density - density::at_point(exact.edges(), point, radius);
+                    worst = worst.max(error.abs() * 255.0);
+                }
+                let (lines, before) = (edges.len(), exact.edges().count());
+                println!("{name}, r {radius}: {lines} for {before} lines, {worst:.3} levels");
+                assert!(worst < 0.1, "{name}, r {radius}: {worst} levels");
+                assert!(lines < before);
+                let fine = shadow.outline(1e-3).area();
+                assert!((area(&edges) / fine - 1.0).abs() < 2e-5);
+            }
+        }
+    }
+
+    #[test]
+    fn drawn_edges_are_oriented_and_take_no_more_memory() {
+        let light = Light::flutter();
+        let mirrored = heart()
+            .transformed([-1.0, 0.0, 0.0, 1.0, 0.0, 0.0])
+            .unwrap();
+        let areas = [heart(), mirrored].map(|shape| {
+            let shadow = light.cast(&shape, 6.0, 0.0).unwrap();
+            let mut edges = drawn(&shadow, 0.5);
+            let (before, capacity) = (edges.clone(), edges.capacity());
+            edges.clear();
+            shadow.edges_into(0.5, 1.0, &mut edges);
+            assert_eq!((&edges, edges.capacity()), (&before, capacity));
+            area(&edges)
+        });
+        assert!(areas[0] > 0.0 && (areas[0] - areas[1]).abs() < 1e-6);
+    }
+
+    #[test]
+    fn what_is_not_simple_is_drawn_by_its_outline() {
+        let light = Light::flutter();
+        let both = light.cast_all(&[heart(), letter()], 6.0, 0.0).unwrap();
+        let edges = drawn(&both, 0.1);
+        assert_eq!(edges.len(), both.exact_outline().edges().count());
+        // A hard edge's outline is as fine as pixels need.
+        let hard = Light::directional([0.0, 0.0], 0.0).unwrap();
+        let hard = hard.cast_all(&[heart(), letter()], 6.0, 0.0).unwrap();
+        assert!(drawn(&hard, 0.1).len() < 10_000);
+        // Shapes apart from each other are all drawn by few lines, those that are fixed among them.
+        let card = Shape::rect(400.0, 0.0, 50.0, 50.0).unwrap();
+        let apart = light.cast_all(&[heart(), card], 6.0, 0.0).unwrap();
+        let alone = light.cast(&heart(), 6.0, 0.0).unwrap();
+        assert_eq!(drawn(&apart, 0.1).len(), drawn(&alone, 0.1).len() + 4);
     }
 }

@@ -1,5 +1,7 @@
 //! Shapes: what a caster looks like on its own plane.
 
+mod simple;
+
 use core::f64::consts::{FRAC_PI_2, PI};
 
 use glam::{DAffine2, DVec2};
@@ -17,7 +19,8 @@ pub struct Shape {
 /// What the contours cover.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Cover {
-    /// The inside of contours known neither to cross nor to touch: no fill rule is needed.
+    /// The inside of contours known neither to cross nor to touch, each a border: no fill rule is needed. All have what
+    /// is covered on their left, or all on their right.
     Simple,
     /// What a fill rule says of contours of which nothing is known.
     Rule(FillRule),
@@ -183,11 +186,17 @@ impl Shape {
             contours: path.contours.clone(),
             cover: Cover::Rule(rule),
         };
-        if let Some((min, max)) = shape.hull() {
-            error::positive("path width", max.x - min.x)?;
-            error::positive("path height", max.y - min.y)?;
-        }
-        Ok(shape)
+        let Some((min, max)) = shape.hull() else {
+            return Ok(shape);
+        };
+        error::positive("path width", max.x - min.x)?;
+        error::positive("path height", max.y - min.y)?;
+        Ok(
+            simple::borders(&shape.contours, rule, (min, max)).map_or(shape, |contours| Self {
+                contours,
+                cover: Cover::Simple,
+            }),
+        )
     }
 
     /// The shape under the affine map (a, b, c, d, e, f) of SVG and PDF: x' = a x + c y + e, y' = b x + d y + f.

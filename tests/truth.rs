@@ -1,4 +1,4 @@
-//! `exact` against maps of an independent closed form, and against plain counting.
+//! Every method against maps of an independent closed form, and coverage against plain counting.
 
 #![expect(
     clippy::unwrap_used,
@@ -10,7 +10,7 @@ use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use penumbral::plan::Method;
-use penumbral::{DensityMap, Grid, Light, Scene, Scratch, Shape, Tolerance};
+use penumbral::{DensityMap, Grid, Light, PixelOptions, Scene, Scratch, Shape};
 
 fn truth_scenes() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/truth");
@@ -69,22 +69,36 @@ fn maps_of_an_independent_closed_form_agree() {
                 .radius()
         };
         let least = scene.surfaces().iter().map(cast).fold(f64::MAX, f64::min);
-        scene
-            .ground_density(
-                Some(Method::Exact),
-                Tolerance::ONE_LEVEL,
-                false,
-                &mut map,
-                &mut scratch,
-            )
-            .unwrap();
-        assert_eq!(map.densities().len(), truth.len(), "{name}");
-        let error = |(got, truth): (&f32, &f64)| (f64::from(*got) - truth).abs() * 255.0;
-        let errors: Vec<f64> = map.densities().iter().zip(&truth).map(error).collect();
-        let worst = errors.iter().copied().fold(0.0, f64::max);
-        let rms = (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt();
-        println!("{name:18} r {least:7.2} px: worst {worst:.4}, rms {rms:.4} levels");
-        assert!(worst <= allowed(&name, least), "{name}: {worst} levels");
+        for method in [
+            Some(Method::Exact),
+            None,
+            Some(Method::Direct),
+            Some(Method::Grid),
+            Some(Method::NinePatch),
+        ] {
+            let options = PixelOptions {
+                method,
+                ..PixelOptions::default()
+            };
+            let shadows = scene.ground_shadows().unwrap();
+            shadows.draw(&mut map, &options, &mut scratch);
+            assert_eq!(map.densities().len(), truth.len(), "{name}");
+            let error = |(got, truth): (&f32, &f64)| (f64::from(*got) - truth).abs() * 255.0;
+            let errors: Vec<f64> = map.densities().iter().zip(&truth).map(error).collect();
+            let worst = errors.iter().copied().fold(0.0, f64::max);
+            let rms = (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt();
+            let label = method.map_or("auto".to_owned(), |method| method.to_string());
+            println!(
+                "{name:18} {label:10} r {least:7.2} px: worst {worst:.4}, rms {rms:.4} levels"
+            );
+            let allowed = match method {
+                Some(Method::Exact) => allowed(&name, least),
+                // The tolerance, for each of the two casters' heights.
+                _ if name == "two-heights" => allowed(&name, least) + 1.0,
+                _ => 1.0,
+            };
+            assert!(worst <= allowed, "{name}, {label}: {worst} levels");
+        }
     }
 }
 

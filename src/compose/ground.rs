@@ -1,13 +1,15 @@
-//! The density of all casters together on the ground.
+//! The shadows of all casters together on the ground.
 
-use super::{Receiver, key_casts};
-use crate::density::{DensitySink, exact};
-use crate::error::{self, Error, Result};
+use super::{Cast, Receiver, key_casts};
+use crate::density::{self, Each, PixelOptions};
+use crate::error::Result;
 use crate::grid::Grid;
-use crate::plan::Method;
+use crate::hidden::Hidden;
+use crate::paint::Paint;
 use crate::scene::Scene;
 use crate::scratch::Scratch;
-use crate::tolerance::Tolerance;
+use crate::shape::Shape;
+use crate::tone::Color;
 
 /// Densities on a picture's pixels, row by row, 0 to 1.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -42,118 +44,81 @@ impl DensityMap {
         let grey = |density: &f32| (f64::from(*density) * 65535.0 + 0.5) as u16;
         self.densities.iter().map(grey).collect()
     }
+}
 
-    /// Blends black of the strength `key` (0 to 1) times the density onto premultiplied RGBA8 pixels, row by row.
-    ///
-    /// # Errors
-    /// [`Error::BufferSize`] when `pixels` are not as many as the densities, 4 bytes each; a key that is not from 0 to 1.
-    pub fn blend_rgba8(&self, key: f32, pixels: &mut [u8]) -> Result<()> {
-        error::within("key", f64::from(key), 0.0, 1.0)?;
-        let needed = self.densities.len() * 4;
-        if pixels.len() != needed {
-            return Err(Error::BufferSize {
-                length: pixels.len(),
-                needed,
-            });
-        }
-        for (pixel, density) in pixels.chunks_exact_mut(4).zip(&self.densities) {
-            if *density > 0.0 {
-                let keep = 1.0 - key * density;
-                for channel in &mut pixel[..3] {
-                    *channel = (f32::from(*channel) * keep + 0.5) as u8;
-                }
-                pixel[3] = (255.0 - (255.0 - f32::from(pixel[3])) * keep + 0.5) as u8;
-            }
-        }
-        Ok(())
-    }
+/// The shadows that a scene's surfaces cast on its ground, projected and ready to be drawn.
+#[derive(Debug)]
+pub struct GroundShadows<'a> {
+    scene: &'a Scene,
+    grid: Grid,
+    casts: Vec<Cast>,
 }
 
 impl Scene {
-    /// Draws the density of all casters on the ground, into `map`, whose memory is used again. Under the casters too,
-    /// unless `visible_only` leaves out, as 0, the pixels wholly covered by opaque ones. By one method for all; none
-    /// leaves the choice to the plan.
+    /// Projects the casters on the ground, as far as the canvas shows it.
     ///
     /// # Errors
     /// None that the scene's constructors let pass.
-    pub fn ground_density(
-        &self,
-        method: Option<Method>,
-        tolerance: Tolerance,
-        visible_only: bool,
-        map: &mut DensityMap,
-        scratch: &mut Scratch,
-    ) -> Result<()> {
-        let grid = self.grid()?;
-        (map.width, map.height) = (grid.width(), grid.height());
+    pub fn ground_shadows(&self) -> Result<GroundShadows<'_>> {
+        Ok(GroundShadows {
+            scene: self,
+            grid: self.grid()?,
+            casts: key_casts(self, &Receiver::ground(self))?,
+        })
+    }
+}
+
+impl GroundShadows<'_> {
+    /// The picture's pixels.
+    #[must_use]
+    pub fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// Hides the pixels under the scene's opaque surfaces.
+    pub fn hide_covered(&self, hidden: &mut Hidden, scratch: &mut Scratch) {
+        let opaque = self.scene.surfaces().iter().filter(|s| s.is_opaque());
+        hidden.reset(&self.grid);
+        hidden.add_all(opaque.map(|surface| -> &Shape { surface.shape() }), scratch);
+    }
+
+    /// Draws what all casters hide of the light into `map`, whose memory is used again; hidden pixels are 0.
+    pub fn draw(&self, map: &mut DensityMap, options: &PixelOptions<'_>, scratch: &mut Scratch) {
+        let (width, height) = (self.grid.width(), self.grid.height());
+        (map.width, map.height) = (width, height);
         map.densities.clear();
         // While the casters are gone through, what they let pass.
-        map.densities
-            .resize(grid.width() as usize * grid.height() as usize, 1.0);
-        if visible_only {
-            self.mark_hidden(&grid, &mut map.densities, scratch);
-        }
-        for cast in key_casts(self, &Receiver::ground(self))? {
-            let mut sink = Transmission {
-                width: grid.width(),
-                passed: &mut map.densities,
-                weight: cast.weight as f32,
+        map.densities.resize(width as usize * height as usize, 1.0);
+        for cast in &self.casts {
+            let weight = cast.weight as f32;
+            let mut sink = Each {
+                pixels: &mut map.densities,
+                stride: width as usize,
+                put: |passed: &mut f32, density: f32| *passed *= 1.0 - weight * density,
             };
-            let choice = crate::plan::choose(&cast.shadow, tolerance, crate::plan::Target::Pixels);
-            match method.unwrap_or(choice.method) {
-                Method::Exact => exact::fill(&cast.shadow, &grid, scratch, &mut sink),
-                Method::Mesh => cast.shadow.mesh(tolerance).scan_convert(&grid, &mut sink),
-            }
+            density::draw(&cast.shadow, &self.grid, options, scratch, &mut sink);
         }
         for passed in &mut map.densities {
-            *passed = if *passed == HIDDEN {
-                0.0
-            } else {
-                1.0 - *passed
-            };
+            *passed = 1.0 - *passed;
+        }
+    }
+
+    /// Blends the shadows, black and of the scene's key strength, onto premultiplied RGBA8 pixels, row by row.
+    ///
+    /// # Errors
+    /// [`Error::BufferSize`](crate::Error::BufferSize) when `pixels` are fewer than the grid's.
+    pub fn blend_rgba8(
+        &self,
+        pixels: &mut [u8],
+        options: &PixelOptions<'_>,
+        scratch: &mut Scratch,
+    ) -> Result<()> {
+        let key = self.scene.tone().key();
+        for cast in &self.casts {
+            let paint = Paint::new(Color::BLACK, key * cast.weight as f32)?;
+            cast.shadow
+                .blend_rgba8(&self.grid, pixels, &paint, options, scratch)?;
         }
         Ok(())
-    }
-
-    fn mark_hidden(&self, grid: &Grid, passed: &mut [f32], scratch: &mut Scratch) {
-        for surface in self.surfaces().iter().filter(|surface| surface.is_opaque()) {
-            let mut sink = Hidden {
-                width: grid.width(),
-                passed: &mut *passed,
-            };
-            exact::fill(&surface.cover(), grid, scratch, &mut sink);
-        }
-    }
-}
-
-/// Marks a pixel that nobody sees.
-const HIDDEN: f32 = -1.0;
-
-struct Hidden<'a> {
-    width: u32,
-    passed: &'a mut [f32],
-}
-
-impl DensitySink for Hidden<'_> {
-    fn put(&mut self, x: u32, y: u32, density: f32) {
-        if density >= 1.0 {
-            self.passed[(y * self.width + x) as usize] = HIDDEN;
-        }
-    }
-}
-
-struct Transmission<'a> {
-    width: u32,
-    passed: &'a mut [f32],
-    weight: f32,
-}
-
-impl DensitySink for Transmission<'_> {
-    fn wants(&self, x: u32, y: u32) -> bool {
-        self.passed[(y * self.width + x) as usize] > 0.0
-    }
-
-    fn put(&mut self, x: u32, y: u32, density: f32) {
-        self.passed[(y * self.width + x) as usize] *= 1.0 - self.weight * density;
     }
 }

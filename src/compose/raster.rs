@@ -3,9 +3,10 @@
 use tiny_skia::{ColorU8, Pixmap};
 
 use super::{Cast, Receiver, ambient_casts, key_casts};
-use crate::density::{DensitySink, exact};
+use crate::density::{self, Each, PixelOptions};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
+use crate::hidden::Hidden;
 use crate::scene::{Scene, Surface};
 use crate::scratch::Scratch;
 use crate::tone::Color;
@@ -115,12 +116,24 @@ impl Renderer {
         for (index, &surface) in order.iter().enumerate() {
             let surface = &scene.surfaces()[surface];
             if surface.is_opaque() {
-                let mut sink = TopmostSink {
-                    topmost: &mut self.topmost,
-                    width: grid.width(),
-                    rank: index as u32 + 1,
+                let rank = index as u32 + 1;
+                let mut sink = Each {
+                    pixels: &mut self.topmost,
+                    stride: grid.width() as usize,
+                    put: |topmost: &mut u32, density: f32| {
+                        if density >= 1.0 {
+                            *topmost = rank;
+                        }
+                    },
                 };
-                exact::fill(&surface.cover(), grid, &mut self.scratch, &mut sink);
+                let options = PixelOptions::default();
+                density::draw(
+                    &surface.cover(),
+                    grid,
+                    &options,
+                    &mut self.scratch,
+                    &mut sink,
+                );
             }
         }
     }
@@ -130,11 +143,19 @@ impl Renderer {
         self.cover.clear();
         self.cover
             .resize(width as usize * layer.grid.height() as usize, 0.0);
-        let mut sink = CoverSink {
-            cover: &mut self.cover,
-            width,
+        let mut sink = Each {
+            pixels: &mut self.cover,
+            stride: width as usize,
+            put: |cover: &mut f32, density| *cover = density,
         };
-        exact::fill(&surface.cover(), &layer.grid, &mut self.scratch, &mut sink);
+        let options = PixelOptions::default();
+        density::draw(
+            &surface.cover(),
+            &layer.grid,
+            &options,
+            &mut self.scratch,
+            &mut sink,
+        );
     }
 
     /// Whether anything of the layer is seen.
@@ -150,18 +171,11 @@ impl Renderer {
     fn draw_layer(&mut self, scene: &Scene, layer: &Layer, pixmap: &mut Pixmap) -> Result<()> {
         let mut key = core::mem::take(&mut self.key);
         let mut ambient = core::mem::take(&mut self.ambient);
-        self.transmit(
-            &key_casts(scene, &layer.receiver)?,
-            layer,
-            pixmap.width(),
-            &mut key,
-        );
-        self.transmit(
-            &ambient_casts(scene, &layer.receiver)?,
-            layer,
-            pixmap.width(),
-            &mut ambient,
-        );
+        let hidden = self.hidden_pixels(layer, pixmap.width());
+        let key_casts = key_casts(scene, &layer.receiver)?;
+        self.transmit(&key_casts, layer, &hidden, &mut key);
+        let ambient_casts = ambient_casts(scene, &layer.receiver)?;
+        self.transmit(&ambient_casts, layer, &hidden, &mut ambient);
         let strength = scene.tone().key();
         let fill = [layer.fill.r, layer.fill.g, layer.fill.b].map(f32::from);
         let stride = pixmap.width() as usize;
@@ -187,23 +201,43 @@ impl Renderer {
         Ok(())
     }
 
+    /// The layer's pixels that are not its own, or that a surface above hides.
+    fn hidden_pixels(&self, layer: &Layer, stride: u32) -> Hidden {
+        let [left, top] = layer.first;
+        let mut hidden = Hidden::new(&layer.grid);
+        hidden.add_where(|column, row| {
+            let pixel = ((row + top) * stride + column + left) as usize;
+            self.topmost[pixel] > layer.rank
+                || self.cover[(row * layer.grid.width() + column) as usize] == 0.0
+        });
+        hidden
+    }
+
     /// What the casters let pass to each pixel of the layer.
-    fn transmit(&mut self, casts: &[Cast], layer: &Layer, stride: u32, passed: &mut Vec<f32>) {
+    fn transmit(&mut self, casts: &[Cast], layer: &Layer, hidden: &Hidden, passed: &mut Vec<f32>) {
         passed.clear();
         passed.resize(
             layer.grid.width() as usize * layer.grid.height() as usize,
             1.0,
         );
+        let options = PixelOptions {
+            hidden: Some(hidden),
+            ..PixelOptions::default()
+        };
         for cast in casts {
-            let mut sink = LayerSink {
-                passed,
-                cover: &self.cover,
-                topmost: &self.topmost,
-                layer,
-                stride,
-                weight: cast.weight as f32,
+            let weight = cast.weight as f32;
+            let mut sink = Each {
+                pixels: passed,
+                stride: layer.grid.width() as usize,
+                put: |passed: &mut f32, density: f32| *passed *= 1.0 - weight * density,
             };
-            exact::fill(&cast.shadow, &layer.grid, &mut self.scratch, &mut sink);
+            density::draw(
+                &cast.shadow,
+                &layer.grid,
+                &options,
+                &mut self.scratch,
+                &mut sink,
+            );
         }
     }
 }
@@ -225,51 +259,4 @@ fn layer(scene: &Scene, surface: &Surface, rank: u32, grid: &Grid) -> Option<Lay
         grid: grid.window(first, end),
         first,
     })
-}
-
-struct TopmostSink<'a> {
-    topmost: &'a mut [u32],
-    width: u32,
-    rank: u32,
-}
-
-impl DensitySink for TopmostSink<'_> {
-    fn put(&mut self, x: u32, y: u32, density: f32) {
-        if density >= 1.0 {
-            self.topmost[(y * self.width + x) as usize] = self.rank;
-        }
-    }
-}
-
-struct CoverSink<'a> {
-    cover: &'a mut [f32],
-    width: u32,
-}
-
-impl DensitySink for CoverSink<'_> {
-    fn put(&mut self, x: u32, y: u32, density: f32) {
-        self.cover[(y * self.width + x) as usize] = density;
-    }
-}
-
-struct LayerSink<'a> {
-    passed: &'a mut [f32],
-    cover: &'a [f32],
-    topmost: &'a [u32],
-    layer: &'a Layer,
-    stride: u32,
-    weight: f32,
-}
-
-impl DensitySink for LayerSink<'_> {
-    fn wants(&self, x: u32, y: u32) -> bool {
-        let [left, top] = self.layer.first;
-        let pixel = ((y + top) * self.stride + x + left) as usize;
-        self.topmost[pixel] <= self.layer.rank
-            && self.cover[(y * self.layer.grid.width() + x) as usize] > 0.0
-    }
-
-    fn put(&mut self, x: u32, y: u32, density: f32) {
-        self.passed[(y * self.layer.grid.width() + x) as usize] *= 1.0 - self.weight * density;
-    }
 }

@@ -8,8 +8,10 @@
 
 use glam::DVec2;
 
-use super::{DensitySink, EXACT_SHARE, at_point, averaged_side, flatness, quadrature};
+use super::frame::Frame;
+use super::{EXACT_SHARE, Sink, at_point, averaged_side, flatness, quadrature};
 use crate::grid::Grid;
+use crate::hidden::Hidden;
 use crate::outline::{Edge, clip_to_box};
 use crate::scratch::Scratch;
 use crate::shadow::Shadow;
@@ -21,35 +23,32 @@ const LEAF: i64 = 8;
 /// the pixel: each the smoother function of the two, as the disc or the pixel is the larger.
 const COVERAGE_RADIUS: f64 = 0.5;
 
-/// Gives `sink` the density of every pixel of the grid that is in the shadow and wanted.
+/// Gives `sink` the density of every pixel of the grid that is in the shadow and not hidden.
 pub(crate) fn fill(
     shadow: &Shadow,
     grid: &Grid,
+    hidden: Option<&Hidden>,
     scratch: &mut Scratch,
-    sink: &mut impl DensitySink,
+    sink: &mut dyn Sink,
 ) {
     let scale = grid.pixels_per_unit();
     let outline = shadow.outline(flatness(EXACT_SHARE, shadow.radius(), 1.0 / scale));
-    let Some((min, max)) = outline.bounds() else {
+    let Some(bounds) = outline.bounds() else {
         return;
     };
     let radius = shadow.radius() * scale;
     let side = averaged_side(radius);
     let reach = radius + side / 2.0;
 
-    // Coordinates count from a whole pixel beside the shadow and tiles begin there, so that a shadow moved by whole
-    // pixels goes through the same arithmetic.
-    let base = (min * scale - reach).floor() - 1.0;
-    let extent = (max * scale + reach - base).max_element();
-    let corner = grid.corner() - base;
-    let whole = corner.floor();
+    let frame = Frame::new(bounds, reach, grid);
     let mut painter = Painter {
         radius,
         side,
         reach,
-        phase: corner - whole,
-        first: [whole.x, whole.y].map(|v| v as i64),
-        size: [grid.width(), grid.height()].map(i64::from),
+        phase: frame.phase,
+        first: frame.first,
+        size: frame.size,
+        hidden,
         scratch,
         sink,
     };
@@ -57,17 +56,17 @@ pub(crate) fn fill(
     edges.extend(
         outline
             .edges()
-            .map(|edge| edge.mapped(scale, |p| p * scale - base)),
+            .map(|edge| edge.mapped(scale, |p| frame.place(p))),
     );
     let mut tile = LEAF;
-    while (tile as f64) < extent {
+    while (tile as f64) < frame.extent.max_element() {
         tile *= 2;
     }
     painter.tile([0, 0], tile, &edges);
     painter.scratch.give(edges);
 }
 
-struct Painter<'a, S> {
+struct Painter<'a> {
     /// The penumbra radius, the side of a pixel's averaged square, and how far from its centre a pixel sees, in pixels.
     radius: f64,
     side: f64,
@@ -77,11 +76,12 @@ struct Painter<'a, S> {
     /// The grid's first pixel and its size, in the shadow's own pixels.
     first: [i64; 2],
     size: [i64; 2],
+    hidden: Option<&'a Hidden>,
     scratch: &'a mut Scratch,
-    sink: &'a mut S,
+    sink: &'a mut dyn Sink,
 }
 
-impl<S: DensitySink> Painter<'_, S> {
+impl Painter<'_> {
     fn tile(&mut self, at: [i64; 2], side: i64, edges: &[Edge]) {
         let range = |axis: usize| {
             let end = self.first[axis] + self.size[axis];
@@ -105,13 +105,13 @@ impl<S: DensitySink> Painter<'_, S> {
             for y in rows {
                 for x in columns.clone() {
                     let (column, row) = ((x - self.first[0]) as u32, (y - self.first[1]) as u32);
-                    if self.sink.wants(column, row) {
+                    if self.hidden.is_none_or(|hidden| !hidden.hides(column, row)) {
                         let density = if met {
                             self.pixel([x, y], &clipped)
                         } else {
                             1.0
                         };
-                        self.sink.put(column, row, density as f32);
+                        self.sink.values(row, column, &[density as f32]);
                     }
                 }
             }
@@ -220,6 +220,7 @@ mod tests {
                 phase: DVec2::ZERO,
                 first: [0, 0],
                 size: [1, 1],
+                hidden: None,
                 scratch: &mut scratch,
                 sink: &mut sink,
             };
@@ -254,8 +255,9 @@ mod tests {
 
     struct Nowhere;
 
-    impl DensitySink for Nowhere {
-        fn put(&mut self, _: u32, _: u32, _: f32) {}
+    impl Sink for Nowhere {
+        fn constant(&mut self, _: u32, _: core::ops::Range<u32>, _: f32) {}
+        fn values(&mut self, _: u32, _: u32, _: &[f32]) {}
     }
 
     #[test]
@@ -268,6 +270,7 @@ mod tests {
             phase: DVec2::ZERO,
             first: [0, 0],
             size: [8, 8],
+            hidden: None,
             scratch: &mut Scratch::new(),
             sink: &mut Nowhere,
         };

@@ -4,9 +4,10 @@
 use glam::DVec2;
 
 use super::{MeshVertex, ShadowMesh};
-use crate::density::DensitySink;
+use crate::density::{Each, Sink};
 use crate::error::Result;
 use crate::grid::Grid;
+use crate::hidden::Hidden;
 
 /// A corner in pixels of the grid.
 #[derive(Debug, Clone, Copy)]
@@ -68,33 +69,28 @@ impl ShadowMesh {
         for row in 0..grid.height() as usize {
             densities[row * grid.stride()..][..grid.width() as usize].fill(0.0);
         }
-        let mut sink = FloatSink {
-            densities,
+        let mut sink = Each {
+            pixels: densities,
             stride: grid.stride(),
+            put: |pixel: &mut f32, density| *pixel = density,
         };
-        self.scan_convert(grid, &mut sink);
+        self.scan_convert(grid, None, &mut sink);
         Ok(())
     }
 
-    pub(crate) fn scan_convert(&self, grid: &Grid, sink: &mut impl DensitySink) {
+    pub(crate) fn scan_convert(&self, grid: &Grid, hidden: Option<&Hidden>, sink: &mut dyn Sink) {
+        let mut put = |column: u32, row: u32, density: f32| {
+            if hidden.is_none_or(|hidden| !hidden.hides(column, row)) {
+                sink.values(row, column, &[density]);
+            }
+        };
         for triangle in self.triangles() {
-            scan_convert(triangle, grid, sink);
+            scan_convert(triangle, grid, &mut put);
         }
     }
 }
 
-struct FloatSink<'a> {
-    densities: &'a mut [f32],
-    stride: usize,
-}
-
-impl DensitySink for FloatSink<'_> {
-    fn put(&mut self, x: u32, y: u32, density: f32) {
-        self.densities[y as usize * self.stride + x as usize] = density;
-    }
-}
-
-fn scan_convert(triangle: [MeshVertex; 3], grid: &Grid, sink: &mut impl DensitySink) {
+fn scan_convert(triangle: [MeshVertex; 3], grid: &Grid, put: &mut impl FnMut(u32, u32, f32)) {
     let [a, b, c] = triangle.map(|vertex| {
         let position = DVec2::new(f64::from(vertex.position[0]), f64::from(vertex.position[1]));
         Corner {
@@ -137,9 +133,9 @@ fn scan_convert(triangle: [MeshVertex; 3], grid: &Grid, sink: &mut impl DensityS
         let columns = centers(left.0, right.0, grid.width());
         let mut density = left.1 + step * (f64::from(columns.start) + 0.5 - left.0);
         for column in columns {
-            if sink.wants(column, row) {
+            {
                 // Steps add up to some 1e-16 beyond either end.
-                sink.put(column, row, density.clamp(0.0, 1.0) as f32);
+                put(column, row, density.clamp(0.0, 1.0) as f32);
             }
             density += step;
         }
@@ -163,11 +159,19 @@ mod tests {
         densities: Vec<f32>,
     }
 
-    impl DensitySink for Count {
-        fn put(&mut self, x: u32, y: u32, density: f32) {
-            let index = (y * self.width + x) as usize;
-            self.hits[index] += 1;
-            self.densities[index] = density;
+    impl Sink for Count {
+        fn constant(&mut self, y: u32, columns: core::ops::Range<u32>, density: f32) {
+            for x in columns {
+                self.values(y, x, &[density]);
+            }
+        }
+
+        fn values(&mut self, y: u32, first: u32, densities: &[f32]) {
+            for (x, density) in (first..).zip(densities) {
+                let index = (y * self.width + x) as usize;
+                self.hits[index] += 1;
+                self.densities[index] = *density;
+            }
         }
     }
 
@@ -203,7 +207,7 @@ mod tests {
             hits: vec![0; 256],
             densities: vec![0.0; 256],
         };
-        mesh.scan_convert(&grid, &mut count);
+        mesh.scan_convert(&grid, None, &mut count);
         assert!(count.hits.iter().all(|&hits| hits == 1), "{:?}", count.hits);
         for (index, density) in count.densities.iter().enumerate() {
             let (x, y) = ((index % 16) as f32 + 0.5, (index / 16) as f32 + 0.5);

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use image::{ImageBuffer, ImageFormat, Luma};
 use penumbral::plan::Method;
-use penumbral::{DensityMap, Scratch, Tolerance};
+use penumbral::{DensityMap, Hidden, PixelOptions, Scratch, Tolerance};
 use serde_json::json;
 
 use crate::{Failure, extension, output, read_scene};
@@ -21,19 +21,26 @@ pub(crate) fn run(
 ) -> Result<(), Failure> {
     extension(picture, &["png"])?;
     let scene = read_scene(path)?;
-    let (mut map, mut scratch) = (DensityMap::default(), Scratch::new());
-    let key = scene.tone().key();
-    let mut canvas = Vec::new();
+    let shadows = scene.ground_shadows().map_err(|e| e.to_string())?;
+    let grid = *shadows.grid();
+    let (mut hidden, mut scratch) = (Hidden::new(&grid), Scratch::new());
+    let mut canvas = vec![255; 4 * grid.width() as usize * grid.height() as usize];
     let mut times = Vec::new();
     let bar = output::progress(repeat as usize + 1, "drawing");
     // The first drawing warms up memory and is not counted.
     for count in 0..=repeat {
         let start = Instant::now();
-        scene
-            .ground_density(method, tolerance, opaque, &mut map, &mut scratch)
-            .map_err(|error| error.to_string())?;
-        canvas.resize(map.densities().len() * 4, 255);
-        map.blend_rgba8(key, &mut canvas)
+        if opaque {
+            shadows.hide_covered(&mut hidden, &mut scratch);
+        }
+        let options = PixelOptions {
+            tolerance,
+            method,
+            hidden: opaque.then_some(&hidden),
+            ..PixelOptions::default()
+        };
+        shadows
+            .blend_rgba8(&mut canvas, &options, &mut scratch)
             .map_err(|error| error.to_string())?;
         let time = start.elapsed().as_nanos();
         if count > 0 {
@@ -42,6 +49,14 @@ pub(crate) fn run(
         bar.inc(1);
     }
     bar.finish_and_clear();
+    let mut map = DensityMap::default();
+    let options = PixelOptions {
+        tolerance,
+        method,
+        hidden: opaque.then_some(&hidden),
+        ..PixelOptions::default()
+    };
+    shadows.draw(&mut map, &options, &mut scratch);
     times.sort_unstable();
     let max = map.densities().iter().copied().fold(0.0_f32, f32::max);
 

@@ -46,7 +46,10 @@ pub(crate) fn run(path: &Path) -> Result<(), Failure> {
         };
         let _ = writeln!(text, "  umbra   {umbra}");
         let _ = writeln!(text, "  bounds  {}", describe(&bounds));
-        let choice = choose(&shadow, Tolerance::default(), Target::Pixels);
+        let pixels = Target::Pixels {
+            per_unit: f64::from(scene.scale()),
+        };
+        let choice = choose(&shadow, Tolerance::default(), pixels);
         let _ = writeln!(text, "  method  {}: {}", choice.method, choice.why);
     }
     output::print(&text)

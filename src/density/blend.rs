@@ -1,0 +1,318 @@
+//! From densities to bytes: coverage, and paint blended onto premultiplied RGBA8.
+
+use core::ops::Range;
+
+use fearless_simd::{
+    Bytes, Level, Simd, SimdBase, SimdFloat, SimdFrom, dispatch, f32x8, i32x8, u8x32, u16x16, u32x8,
+};
+
+use super::Sink;
+use crate::paint::Paint;
+use crate::tone::Color;
+
+/// Where rows are in a buffer, and which pixel of the dithering pattern the first one is.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Layout {
+    pub(crate) stride: usize,
+    /// The pattern's column and row, or none to round to the nearest.
+    pub(crate) dither: Option<[u32; 2]>,
+}
+
+/// Bayer's ordered dithering (Bayer 1973): the ranks 0 to 63 of an 8 x 8 pattern. Each 2 x 2, 4 x 4 and 8 x 8 block holds
+/// evenly spread thresholds, so a slope becomes no band wider than a few pixels.
+const BAYER: [[u8; 8]; 8] = {
+    let mut pattern = [[0; 8]; 8];
+    let mut y = 0;
+    while y < 8 {
+        let mut x = 0;
+        while x < 8 {
+            let mut rank = 0;
+            let mut bit = 0;
+            while bit < 3 {
+                let (across, down) = ((x >> bit) & 1, (y >> bit) & 1);
+                rank |= (((across ^ down) << 1) | down) << (2 * (2 - bit));
+                bit += 1;
+            }
+            pattern[y][x] = rank as u8;
+            x += 1;
+        }
+        y += 1;
+    }
+    pattern
+};
+
+/// What is added to eight pixels before their last 8 bits are cut off, in 256ths, from column `first` of row `y` on.
+#[inline(always)]
+fn thresholds(layout: &Layout, y: u32, first: u32) -> [u16; 8] {
+    match layout.dither {
+        None => [128; 8],
+        Some([left, top]) => {
+            let row = &BAYER[(y.wrapping_add(top) & 7) as usize];
+            let mut thresholds = [0; 8];
+            for (lane, threshold) in thresholds.iter_mut().enumerate() {
+                let column = first.wrapping_add(left).wrapping_add(lane as u32) & 7;
+                *threshold = u16::from(row[column as usize]) * 4 + 2;
+            }
+            thresholds
+        }
+    }
+}
+
+/// Writes densities as 8-bit coverage.
+pub(crate) struct A8<'a> {
+    pub(crate) mask: &'a mut [u8],
+    pub(crate) layout: Layout,
+}
+
+impl Sink for A8<'_> {
+    #[inline(always)]
+    fn constant(&mut self, y: u32, columns: Range<u32>, density: f32) {
+        let start = y as usize * self.layout.stride;
+        let row = &mut self.mask[start + columns.start as usize..start + columns.end as usize];
+        let thresholds = thresholds(&self.layout, y, columns.start);
+        for part in row.chunks_mut(8) {
+            for (pixel, threshold) in part.iter_mut().zip(thresholds) {
+                *pixel = pixel.saturating_add(coverage(density, threshold));
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn values(&mut self, y: u32, first: u32, densities: &[f32]) {
+        let start = y as usize * self.layout.stride + first as usize;
+        let row = &mut self.mask[start..start + densities.len()];
+        let thresholds = thresholds(&self.layout, y, first);
+        for (part, densities) in row.chunks_mut(8).zip(densities.chunks(8)) {
+            for ((pixel, density), threshold) in part.iter_mut().zip(densities).zip(thresholds) {
+                *pixel = pixel.saturating_add(coverage(*density, threshold));
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn coverage(density: f32, threshold: u16) -> u8 {
+    // Density 1 is 255 exactly, whatever the threshold.
+    ((density * 65_280.0) as u32 + u32::from(threshold))
+        .min(65_535)
+        .wrapping_shr(8) as u8
+}
+
+/// Blends paint of one colour onto premultiplied RGBA8 pixels.
+pub(crate) struct Rgba8<'a> {
+    pub(crate) level: Level,
+    pub(crate) pixels: &'a mut [u8],
+    pub(crate) layout: Layout,
+    pub(crate) ink: Ink,
+}
+
+/// Paint of one colour.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Ink {
+    /// Red and blue, green and opaque, each pair in the halves of 32 bits and in 256ths.
+    red_blue: u32,
+    green_alpha: u32,
+    /// The paint's opacity where the density is 1, in 65535ths.
+    strength: f32,
+}
+
+/// Bytes of eight pixels.
+const BLOCK: usize = 32;
+
+/// The upper byte of each half of 32 bits.
+const UPPER: u32 = 0xff00_ff00;
+
+impl Sink for Rgba8<'_> {
+    fn constant(&mut self, y: u32, columns: Range<u32>, density: f32) {
+        let thresholds = thresholds(&self.layout, y, columns.start);
+        let start = y as usize * self.layout.stride;
+        let row = 4 * (start + columns.start as usize)..4 * (start + columns.end as usize);
+        let (ink, pixels) = (&self.ink, &mut self.pixels[row]);
+        dispatch!(self.level, simd => ink.blend_constant(simd, pixels, density, &thresholds));
+    }
+
+    fn values(&mut self, y: u32, first: u32, densities: &[f32]) {
+        let thresholds = thresholds(&self.layout, y, first);
+        let start = 4 * (y as usize * self.layout.stride + first as usize);
+        let (ink, pixels) = (
+            &self.ink,
+            &mut self.pixels[start..start + 4 * densities.len()],
+        );
+        dispatch!(self.level, simd => ink.blend_values(simd, pixels, densities, &thresholds));
+    }
+}
+
+impl Ink {
+    pub(crate) fn new(paint: &Paint) -> Self {
+        let Color { r, g, b, .. } = paint.color();
+        Self {
+            red_blue: (u32::from(b) << 24) | (u32::from(r) << 8),
+            green_alpha: UPPER & ((255 << 24) | (u32::from(g) << 8)),
+            strength: paint.opacity() * 65_535.0,
+        }
+    }
+
+    #[inline(always)]
+    fn blend_constant<S: Simd>(
+        &self,
+        simd: S,
+        pixels: &mut [u8],
+        density: f32,
+        thresholds: &[u16; 8],
+    ) {
+        let brush = Brush::new(simd, self, thresholds);
+        let opacity = brush.opacity(f32x8::splat(simd, density));
+        let paint = brush.paint(opacity);
+        let (blocks, rest) = pixels.as_chunks_mut::<BLOCK>();
+        for block in blocks {
+            brush.blend(block, opacity, paint);
+        }
+        if !rest.is_empty() {
+            let mut block = [0; BLOCK];
+            block[..rest.len()].copy_from_slice(rest);
+            brush.blend(&mut block, opacity, paint);
+            rest.copy_from_slice(&block[..rest.len()]);
+        }
+    }
+
+    #[inline(always)]
+    fn blend_values<S: Simd>(
+        &self,
+        simd: S,
+        pixels: &mut [u8],
+        densities: &[f32],
+        thresholds: &[u16; 8],
+    ) {
+        let brush = Brush::new(simd, self, thresholds);
+        let (parts, last) = densities.as_chunks::<8>();
+        let (blocks, rest) = pixels.as_chunks_mut::<BLOCK>();
+        for (block, part) in blocks.iter_mut().zip(parts) {
+            brush.blend_part(block, part);
+        }
+        if !rest.is_empty() {
+            let (mut block, mut part) = ([0; BLOCK], [0.0; 8]);
+            block[..rest.len()].copy_from_slice(rest);
+            part[..last.len()].copy_from_slice(last);
+            brush.blend_part(&mut block, &part);
+            rest.copy_from_slice(&block[..rest.len()]);
+        }
+    }
+}
+
+/// Paint at hand: each of its vectors holds two channels of eight pixels.
+struct Brush<S: Simd> {
+    simd: S,
+    strength: f32,
+    red_blue: u16x16<S>,
+    green_alpha: u16x16<S>,
+    thresholds: u16x16<S>,
+}
+
+impl<S: Simd> Brush<S> {
+    #[inline(always)]
+    fn new(simd: S, ink: &Ink, thresholds: &[u16; 8]) -> Self {
+        let mut twice = [0; 8];
+        for (both, threshold) in twice.iter_mut().zip(thresholds) {
+            *both = u32::from(*threshold) * 0x1_0001;
+        }
+        Self {
+            simd,
+            strength: ink.strength,
+            red_blue: u32x8::splat(simd, ink.red_blue).bitcast(),
+            green_alpha: u32x8::splat(simd, ink.green_alpha).bitcast(),
+            thresholds: u32x8::simd_from(simd, twice).bitcast(),
+        }
+    }
+
+    /// The paint's opacity on eight pixels, in 65535ths.
+    #[inline(always)]
+    fn opacity(&self, densities: f32x8<S>) -> u16x16<S> {
+        let opacity: i32x8<S> = (densities * self.strength + 0.5).to_int();
+        let opacity: u32x8<S> = opacity.bitcast();
+        (opacity | (opacity << 16)).bitcast()
+    }
+
+    /// What the paint adds to both pairs of channels, in 256ths.
+    #[inline(always)]
+    fn paint(&self, opacity: u16x16<S>) -> [u16x16<S>; 2] {
+        [
+            high(self.simd, self.red_blue, opacity),
+            high(self.simd, self.green_alpha, opacity),
+        ]
+    }
+
+    #[inline(always)]
+    fn blend_part(&self, block: &mut [u8; BLOCK], densities: &[f32; 8]) {
+        let opacity = self.opacity(f32x8::simd_from(self.simd, *densities));
+        self.blend(block, opacity, self.paint(opacity));
+    }
+
+    #[inline(always)]
+    fn blend(&self, block: &mut [u8; BLOCK], opacity: u16x16<S>, paint: [u16x16<S>; 2]) {
+        let pixels: u32x8<S> = u8x32::simd_from(self.simd, *block).bitcast();
+        let red_blue = self.over((pixels << 8) & UPPER, opacity, paint[0]) >> 8;
+        let green_alpha = self.over(pixels & UPPER, opacity, paint[1]) & UPPER;
+        let mixed: u8x32<S> = ((red_blue & (UPPER >> 8)) | green_alpha).bitcast();
+        *block = mixed.into();
+    }
+
+    /// Two channels under the paint, to be cut off to their upper bytes.
+    #[inline(always)]
+    fn over(&self, channels: u32x8<S>, opacity: u16x16<S>, paint: u16x16<S>) -> u32x8<S> {
+        let below: u16x16<S> = channels.bitcast();
+        let left = below - high(self.simd, below, opacity);
+        // What is left and what is added are 255 upper bytes and 1 at most, a threshold is 254 lower ones.
+        (left + paint + self.thresholds).bitcast()
+    }
+}
+
+/// The upper half of each product.
+#[inline(always)]
+fn high<S: Simd>(simd: S, a: u16x16<S>, b: u16x16<S>) -> u16x16<S> {
+    let (a, b): ([u16; 16], [u16; 16]) = (a.into(), b.into());
+    let mut high = [0; 16];
+    for lane in 0..16 {
+        high[lane] = ((u32::from(a[lane]) * u32::from(b[lane])) >> 16) as u16;
+    }
+    u16x16::simd_from(simd, high)
+}
+
+#[cfg(test)]
+mod bench {
+    use super::*;
+    use fearless_simd::{Level, dispatch};
+    #[inline(always)]
+    fn run<S: Simd>(simd: S, which: u32, pixels: &mut [u8], densities: &[f32]) {
+        let _ = simd;
+        let mut sink = Rgba8 {
+            pixels,
+            ink: core::hint::black_box(Ink::new(&Paint::new(Color::BLACK, 0.2).unwrap())),
+            layout: Layout {
+                stride: 300,
+                dither: None,
+            },
+            level: Level::new(),
+        };
+        for y in 0..100 {
+            if which == 0 {
+                sink.constant(y, 3..290, 0.5);
+            } else {
+                sink.values(y, 3, &densities[..287]);
+            }
+        }
+    }
+    #[test]
+    fn speed() {
+        let mut pixels = vec![200; 120000];
+        let densities = vec![0.5; 300];
+        for which in 0..2 {
+            let mut best = u128::MAX;
+            for _ in 0..2000 {
+                let start = std::time::Instant::now();
+                dispatch!(Level::new(), simd => run(simd, which, &mut pixels, &densities));
+                best = best.min(start.elapsed().as_nanos());
+            }
+            println!("blend {which}: {} ns a pixel", best as f64 / 28700.0);
+        }
+    }
+}

@@ -1,0 +1,369 @@
+//! The outline cut into pieces along which y only rises or only falls.
+
+use core::f64::consts::{FRAC_PI_2, PI, SQRT_2};
+
+use glam::DVec2;
+
+use super::kernels::{self, Ramp, RowArc, RowCut, RowLine};
+use super::{Lattice, RowForm, Window};
+use crate::outline::{Arc, Edge};
+
+/// A line or an arc between two heights.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Piece {
+    pub(super) low: f64,
+    pub(super) high: f64,
+    pub(super) from: DVec2,
+    pub(super) to: DVec2,
+    pub(super) form: Form,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Form {
+    /// Its unit vector, its length, the x it gains with y, and half the chord that it cuts from the unit disc's row.
+    Line {
+        along: DVec2,
+        length: f64,
+        slope: f64,
+        width: f64,
+    },
+    Arc {
+        center: DVec2,
+        radius: f64,
+        turn: f64,
+        side: f64,
+    },
+}
+
+/// Arcs of larger radius, in the window's unit, are cut into lines: single precision would not tell them from these.
+const LARGEST: f64 = 1024.0;
+
+/// How far lines in place of an arc may move the density: 0.1 level.
+const ERROR: f64 = 4e-4;
+
+/// Cuts edges into `pieces`, sorted by where they begin.
+pub(super) fn cut(edges: impl Iterator<Item = Edge>, window: Window, pieces: &mut Vec<Piece>) {
+    pieces.clear();
+    // The first piece of the loop that is being cut.
+    let (mut first, mut end) = (0, None);
+    for edge in edges {
+        if end != Some(edge.from()) {
+            close(pieces, first);
+            first = pieces.len();
+        }
+        end = Some(edge.to());
+        match edge {
+            Edge::Line(line) | Edge::Border(line) => push_line(line.from, line.to, pieces),
+            Edge::Arc(arc) if window == Window::Square || arc.radius > LARGEST => {
+                flatten(&arc, window, pieces);
+            }
+            Edge::Arc(arc) => push_arc(&arc, first, pieces),
+        }
+    }
+    close(pieces, first);
+    let key = |p: &Piece| [p.low, p.high, p.from.x, p.to.x];
+    pieces.sort_unstable_by(|a, b| {
+        let pairs = key(a).into_iter().zip(key(b));
+        pairs
+            .map(|(a, b)| a.total_cmp(&b))
+            .find(|order| order.is_ne())
+            .unwrap_or(core::cmp::Ordering::Equal)
+    });
+}
+
+/// Joins a loop's last piece with its first where these are one arc.
+fn close(pieces: &mut Vec<Piece>, first: usize) {
+    if pieces.len() > first + 1
+        && let Some(last) = pieces.last().copied()
+        && let Some(joined) = last.joined(&pieces[first])
+    {
+        pieces[first] = joined;
+        pieces.pop();
+    }
+}
+
+fn push_line(from: DVec2, to: DVec2, pieces: &mut Vec<Piece>) {
+    // A level line adds nothing: its ends' neighbours tell of it.
+    if from.y == to.y {
+        return;
+    }
+    let length = (to - from).length();
+    let along = (to - from) / length;
+    pieces.push(Piece {
+        low: from.y.min(to.y),
+        high: from.y.max(to.y),
+        from,
+        to,
+        form: Form::Line {
+            along,
+            length,
+            slope: along.x / along.y,
+            width: 1.0 / along.y.abs(),
+        },
+    });
+}
+
+/// Cuts an arc where it is level; where its whole half could be inside the disc, where it is upright too.
+fn push_arc(arc: &Arc, first: usize, pieces: &mut Vec<Piece>) {
+    let turn = arc.sweep.signum();
+    // Cuts are at an odd number of quarter turns, or at every one.
+    let (step, phase) = if arc.radius < SQRT_2 {
+        (FRAC_PI_2, 0.0)
+    } else {
+        (PI, FRAC_PI_2)
+    };
+    let end = arc.start + arc.sweep;
+    let mut cut = ((arc.start * turn - phase) / step).floor();
+    let (mut from, mut start) = (arc.from, arc.start);
+    loop {
+        cut += 1.0;
+        let angle = (cut * step + phase) * turn;
+        if (angle - start) * turn <= 0.0 {
+            continue;
+        }
+        let last = (end - angle) * turn <= 0.0;
+        let (to, stop) = if last {
+            (arc.to, end)
+        } else {
+            (extreme(arc, angle), angle)
+        };
+        let middle = libm::cos((start + stop) / 2.0);
+        let piece = Piece {
+            low: from.y.min(to.y),
+            high: from.y.max(to.y),
+            from,
+            to,
+            form: Form::Arc {
+                center: arc.center,
+                radius: arc.radius,
+                turn,
+                side: 1.0_f64.copysign(middle),
+            },
+        };
+        match pieces
+            .last()
+            .filter(|_| pieces.len() > first)
+            .and_then(|last| last.joined(&piece))
+        {
+            Some(joined) => {
+                pieces.pop();
+                pieces.push(joined);
+            }
+            None => pieces.push(piece),
+        }
+        if last {
+            return;
+        }
+        (from, start) = (to, stop);
+    }
+}
+
+/// The arc's point at a multiple of a quarter turn.
+fn extreme(arc: &Arc, angle: f64) -> DVec2 {
+    let quarter = (angle / FRAC_PI_2).round() as i64;
+    let direction =
+        [DVec2::X, DVec2::Y, DVec2::NEG_X, DVec2::NEG_Y][quarter.rem_euclid(4) as usize];
+    arc.center + direction * arc.radius
+}
+
+/// Cuts an arc into pieces, each replaced by the two lines that enclose as much: what a window sees wholly is exact, and
+/// only where it cuts a piece is there an error. With a piece's chord c and sagitta s that is 0.0247 s c for each of the two
+/// cut, 0.049 c³ / (8 radius) for both, and no more than s / 3 along the window's width.
+fn flatten(arc: &Arc, window: Window, pieces: &mut Vec<Piece>) {
+    let area = match window {
+        Window::Disc => PI,
+        Window::Square => 1.0,
+    };
+    let by_area = libm::cbrt(ERROR * area * 8.0 * arc.radius / 0.049);
+    let by_width = (24.0 * ERROR * area / 2.0 * arc.radius).sqrt();
+    let chord = by_area.min(2.0).max(by_width);
+    let count = (arc.sweep.abs() * arc.radius / chord).ceil().max(2.0);
+    // A chord's own segment as two lines: the triangle of its area.
+    let angle = arc.sweep.abs() / count / 2.0;
+    let height = (angle - libm::sin(angle) * libm::cos(angle)) / libm::sin(angle);
+    let apex = libm::cos(angle) + height;
+    let mut from = arc.from;
+    for index in 0..count as u64 {
+        let to = if index as f64 + 1.0 == count {
+            arc.to
+        } else {
+            arc.at(arc.start + arc.sweep * ((index as f64 + 1.0) / count))
+        };
+        let middle = arc.at(arc.start + arc.sweep * ((index as f64 + 0.5) / count));
+        let top = arc.center + (middle - arc.center) * apex;
+        push_line(from, top, pieces);
+        push_line(top, to, pieces);
+        from = to;
+    }
+}
+
+impl Piece {
+    /// Whether it is a line straight up or down.
+    pub(super) fn is_upright(&self) -> bool {
+        matches!(self.form, Form::Line { .. }) && self.from.x == self.to.x
+    }
+
+    /// This piece and the one after it as one, where they are of one circle and go on the same way.
+    fn joined(&self, next: &Self) -> Option<Self> {
+        const SAME: f64 = 1e-6;
+        let (
+            Form::Arc {
+                center,
+                radius,
+                turn,
+                side,
+            },
+            Form::Arc {
+                center: c,
+                radius: r,
+                turn: t,
+                side: s,
+            },
+        ) = (self.form, next.form)
+        else {
+            return None;
+        };
+        let same = self.to == next.from
+            && (turn, side) == (t, s)
+            && center.distance(c) < SAME
+            && (radius - r).abs() < SAME
+            && radius >= SQRT_2;
+        same.then(|| Self {
+            low: self.low.min(next.low),
+            high: self.high.max(next.high),
+            to: next.to,
+            ..*self
+        })
+    }
+
+    #[inline(always)]
+    fn x_at(&self, y: f64) -> f64 {
+        match self.form {
+            Form::Line { slope, .. } => self.from.x + (y - self.from.y) * slope,
+            Form::Arc {
+                center,
+                radius,
+                side,
+                ..
+            } => {
+                let rise = y - center.y;
+                center.x + side * (radius * radius - rise * rise).max(0.0).sqrt()
+            }
+        }
+    }
+
+    /// Where the part of the piece that windows in the row at `y` meet begins and ends, from the row.
+    #[inline(always)]
+    fn met(&self, y: f64, window: Window) -> [f64; 2] {
+        let reach = window.reach();
+        [(self.low - y).max(-reach), (self.high - y).min(reach)]
+    }
+
+    /// The least and the largest x from which a window in the row at `y` meets the piece.
+    #[inline(always)]
+    pub(super) fn extent(&self, y: f64, window: Window) -> [f64; 2] {
+        let reach = window.reach();
+        let [low, high] = self.met(y, window);
+        let (a, b) = (self.x_at(y + low), self.x_at(y + high));
+        let (mut left, mut right) = (a.min(b) - reach, a.max(b) + reach);
+        if window == Window::Square {
+            return [left, right];
+        }
+        match self.form {
+            Form::Line { slope, width, .. } => {
+                // A disc farther than 1 from the line does not meet it.
+                let middle = self.from.x + (y - self.from.y) * slope;
+                left = left.max(middle - width);
+                right = right.min(middle + width);
+            }
+            Form::Arc {
+                center,
+                radius,
+                side,
+                ..
+            } => {
+                let rise = center.y - y;
+                if low <= rise && rise <= high {
+                    let farthest = center.x + side * radius;
+                    left = left.min(farthest - reach);
+                    right = right.max(farthest + reach);
+                }
+            }
+        }
+        [left, right.max(left)]
+    }
+
+    /// The piece as a row sees it from its column at `origin`.
+    #[inline(always)]
+    pub(super) fn seen_from(&self, origin: DVec2, lattice: &Lattice, halves: [f32; 2]) -> RowForm {
+        let [low, high] = self.met(origin.y, lattice.window);
+        let (from, to) = (self.from - origin, self.to - origin);
+        let passes = self.low <= origin.y - 1.0 && self.high >= origin.y + 1.0;
+        let ramp = |start: f64, slope: f64| Ramp {
+            start: start as f32,
+            step: (-slope * lattice.pitch) as f32,
+        };
+        match self.form {
+            Form::Line { along, .. } if lattice.window == Window::Square => {
+                let ends = [low, high].map(|rise| ramp(self.x_at(origin.y + rise) - origin.x, 1.0));
+                let upwards = along.y > 0.0;
+                RowForm::Cut(RowCut {
+                    ends,
+                    height: if upwards { high - low } else { low - high } as f32,
+                })
+            }
+            Form::Line { along, length, .. } => {
+                let distance = ramp(from.perp_dot(along), along.y);
+                if passes {
+                    return RowForm::ThroughLine(distance);
+                }
+                RowForm::Line(RowLine {
+                    distance,
+                    start: ramp(from.dot(along), along.x),
+                    length: length as f32,
+                    along: along.as_vec2().to_array(),
+                    halves,
+                })
+            }
+            Form::Arc {
+                center,
+                radius,
+                turn,
+                side,
+            } => {
+                let seen = center - origin;
+                let end = |end: DVec2| {
+                    // Negative where the end is above or below the disc.
+                    let width = 1.0 - end.y * end.y;
+                    let width = if width > 0.0 { width.sqrt() } else { -1.0 };
+                    [end.x - seen.x, end.y, width].map(|v| v as f32)
+                };
+                let arc = RowArc {
+                    center: ramp(seen.x, 1.0),
+                    center_y: seen.y as f32,
+                    radius: radius as f32,
+                    power: [
+                        (seen.x * seen.x + (seen.y - radius) * (seen.y + radius)) as f32,
+                        (-2.0 * seen.x * lattice.pitch) as f32,
+                        (lattice.pitch * lattice.pitch) as f32,
+                    ],
+                    turn: turn as f32,
+                    side: side as f32,
+                    from: end(from),
+                    to: end(to),
+                    middle: (self.x_at(origin.y + (low + high) / 2.0) - center.x) as f32,
+                    halves,
+                    segment: kernels::segment_of(
+                        (to - from).length_squared() as f32,
+                        radius as f32,
+                    ),
+                };
+                if passes && radius >= SQRT_2 {
+                    RowForm::ThroughArc(arc)
+                } else {
+                    RowForm::Arc(arc)
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! The points that a pixel's average is taken from, where its penumbra is narrower than 3 px.
+
+use core::f64::consts::PI;
+
+use super::averaged_side;
+use super::rows::{Line, Points, Window};
+
+/// Points of one pixel, for discs or for squares. On edges, corners, arcs, slivers and dots their average is within 0.6 level
+/// of the exact one.
+#[derive(Debug, Clone)]
+pub(crate) struct Sampling {
+    pub(crate) window: Window,
+    /// The window's unit in pixels.
+    pub(crate) unit: f64,
+    lines: [Line; MOST],
+    columns: [(f32, f32); MOST],
+    counts: [usize; 2],
+}
+
+const MOST: usize = 6;
+
+/// Below this penumbra radius in pixels, squares averaged over the disc take fewer points than discs averaged over the
+/// square.
+const SQUARES: f64 = 0.5;
+
+/// Nodes and weights of the Gauss-Legendre rules on -1 to 1, the half that is not negative (Abramowitz & Stegun 1964, table
+/// 25.4).
+const GAUSS: [&[(f64, f64)]; 6] = [
+    &[(0.0, 2.0)],
+    &[(0.577_350_269_189_625_8, 1.0)],
+    &[
+        (0.0, 0.888_888_888_888_888_9),
+        (0.774_596_669_241_483_4, 0.555_555_555_555_555_6),
+    ],
+    &[
+        (0.339_981_043_584_856_3, 0.652_145_154_862_546_1),
+        (0.861_136_311_594_052_6, 0.347_854_845_137_453_86),
+    ],
+    &[
+        (0.0, 0.568_888_888_888_888_9),
+        (0.538_469_310_105_683_1, 0.478_628_670_499_366_5),
+        (0.906_179_845_938_664, 0.236_926_885_056_189_1),
+    ],
+    &[
+        (0.238_619_186_083_196_9, 0.467_913_934_572_691_05),
+        (0.661_209_386_466_264_5, 0.360_761_573_048_138_6),
+        (0.932_469_514_203_152, 0.171_324_492_379_170_34),
+    ],
+];
+
+/// The rule of `count` points on -1/2 to 1/2: offsets and weights that sum to 1.
+fn gauss(count: usize) -> impl Iterator<Item = (f64, f64)> {
+    GAUSS[count - 1].iter().flat_map(|&(node, weight)| {
+        let mirrored = (node > 0.0).then_some((-node / 2.0, weight / 2.0));
+        mirrored.into_iter().chain([(node / 2.0, weight / 2.0)])
+    })
+}
+
+impl Sampling {
+    /// For a penumbra radius in pixels.
+    pub(crate) fn new(radius: f64) -> Self {
+        let mut sampling = Self {
+            window: Window::Disc,
+            unit: radius,
+            lines: [Points::CENTER.lines[0]; MOST],
+            columns: [Points::CENTER.columns[0]; MOST],
+            counts: [1, 1],
+        };
+        if radius == 0.0 {
+            (sampling.window, sampling.unit) = (Window::Square, 1.0);
+        } else if radius < SQUARES {
+            (sampling.window, sampling.unit) = (Window::Square, 1.0);
+            sampling.over_disc(radius, if radius < 0.3 { 4 } else { 6 });
+        } else if radius < 3.0 {
+            let count = match radius {
+                ..1.1 => 5,
+                1.1..2.0 => 3,
+                _ => 2,
+            };
+            sampling.over_square(averaged_side(radius), count);
+        }
+        sampling
+    }
+
+    /// By Gauss's rule both ways.
+    fn over_square(&mut self, side: f64, count: usize) {
+        for (index, (offset, weight)) in gauss(count).enumerate() {
+            self.lines[index] = Line {
+                offset: offset * side / self.unit,
+                weight,
+                spread: 1.0,
+            };
+            self.columns[index] = ((offset * side) as f32, weight as f32);
+        }
+        self.counts = [count; 2];
+    }
+
+    /// By Gauss's rule along chords, of which Chebyshev's second rule says where they are: it is exact for the disc's
+    /// widths.
+    fn over_disc(&mut self, radius: f64, count: usize) {
+        for index in 0..count {
+            let angle = PI * (index + 1) as f64 / (count + 1) as f64;
+            let sin = libm::sin(angle);
+            self.lines[index] = Line {
+                offset: radius * libm::cos(angle),
+                weight: 2.0 / (count + 1) as f64 * sin * sin,
+                spread: sin,
+            };
+        }
+        for (index, (offset, weight)) in gauss(count).enumerate() {
+            self.columns[index] = ((2.0 * offset * radius) as f32, weight as f32);
+        }
+        self.counts = [count; 2];
+    }
+
+    pub(crate) fn points(&self) -> Points<'_> {
+        Points {
+            lines: &self.lines[..self.counts[0]],
+            columns: &self.columns[..self.counts[1]],
+        }
+    }
+}

@@ -1,0 +1,329 @@
+//! Hidden: the pixels that something opaque covers, on which no shadow is seen.
+
+use core::ops::Range;
+
+use glam::DVec2;
+
+use crate::density::{self, PixelOptions, Sink};
+use crate::grid::Grid;
+use crate::light::Projection;
+use crate::outline::{Edge, Outline};
+use crate::scratch::Scratch;
+use crate::shadow::Shadow;
+use crate::shape::Shape;
+
+/// Pixels of one grid that need no shadow: those wholly covered by opaque surfaces above the receiver, or clipped away.
+///
+/// It is a matter of speed alone: whatever is painted over a shadow hides it anyway, and a pixel that is only partly
+/// covered is never hidden.
+///
+/// ```
+/// use penumbral::{Color, Grid, Hidden, Light, Paint, PixelOptions, Scratch, Shape};
+///
+/// let card = Shape::rounded_rect(24.0, 40.0, 312.0, 160.0, 12.0)?;
+/// let shadow = Light::android(360.0)?.cast(&card, 8.0, 0.0)?;
+/// let grid = Grid::new([0.0, 0.0], [360, 240], 1.0)?;
+/// let mut scratch = Scratch::new();
+///
+/// let mut hidden = Hidden::new(&grid);
+/// hidden.add(&card, &mut scratch);
+/// let options = PixelOptions { hidden: Some(&hidden), ..PixelOptions::default() };
+/// let mut canvas = vec![255; 360 * 240 * 4];
+/// let paint = Paint::new(Color::BLACK, 0.19)?;
+/// shadow.blend_rgba8(&grid, &mut canvas, &paint, &options, &mut scratch)?;
+/// # Ok::<(), penumbral::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Hidden {
+    grid: Grid,
+    /// Spans of columns, sorted by row and column, apart from each other.
+    spans: Vec<Span>,
+    /// Where each row's spans begin, and where the last one's end.
+    rows: Vec<u32>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Span {
+    row: u32,
+    start: u32,
+    end: u32,
+}
+
+impl Hidden {
+    /// Nothing hidden on a grid.
+    #[must_use]
+    pub fn new(grid: &Grid) -> Self {
+        let mut hidden = Self {
+            grid: *grid,
+            spans: Vec::new(),
+            rows: Vec::new(),
+        };
+        hidden.seal();
+        hidden
+    }
+
+    /// Nothing hidden on a grid, with the memory of what was.
+    pub fn reset(&mut self, grid: &Grid) {
+        self.grid = *grid;
+        self.spans.clear();
+        self.seal();
+    }
+
+    /// Hides the pixels that a shape covers wholly.
+    pub fn add(&mut self, shape: &Shape, scratch: &mut Scratch) {
+        self.add_all(core::iter::once(shape), scratch);
+    }
+
+    /// Hides the pixels that one of many shapes covers wholly.
+    pub fn add_all<'a>(&mut self, shapes: impl Iterator<Item = &'a Shape>, scratch: &mut Scratch) {
+        for shape in shapes {
+            match Outline::of_simple(shape).filter(Outline::is_convex) {
+                Some(outline) => self.push_convex(&outline),
+                None => self.push_covered(shape, scratch),
+            }
+        }
+        self.seal();
+    }
+
+    /// Hides the pixels for which `hides` (column, row) says so.
+    #[cfg(feature = "raster")]
+    pub(crate) fn add_where(&mut self, mut hides: impl FnMut(u32, u32) -> bool) {
+        for row in 0..self.grid.height() {
+            let mut start = None;
+            for column in 0..=self.grid.width() {
+                let hidden = column < self.grid.width() && hides(column, row);
+                match (hidden, start) {
+                    (true, None) => start = Some(column),
+                    (false, Some(first)) => {
+                        self.push(row, first, column);
+                        start = None;
+                    }
+                    _ => {}
+                }
+            }
+        }
+        self.seal();
+    }
+
+    /// The grid that it was made for.
+    #[must_use]
+    pub fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    pub(crate) fn hides(&self, column: u32, row: u32) -> bool {
+        self.of_row(row)
+            .iter()
+            .any(|span| span.start <= column && column < span.end)
+    }
+
+    /// Calls `see` with the parts of a row's columns that are seen, from left to right.
+    #[inline(always)]
+    pub(crate) fn seen(&self, row: u32, columns: Range<u32>, mut see: impl FnMut(Range<u32>)) {
+        let mut start = columns.start;
+        for span in self.of_row(row) {
+            if span.start >= columns.end {
+                break;
+            }
+            if span.start > start {
+                see(start..span.start);
+            }
+            start = start.max(span.end);
+        }
+        if start < columns.end {
+            see(start..columns.end);
+        }
+    }
+
+    fn of_row(&self, row: u32) -> &[Span] {
+        let row = row as usize;
+        &self.spans[self.rows[row] as usize..self.rows[row + 1] as usize]
+    }
+
+    fn push(&mut self, row: u32, start: u32, end: u32) {
+        if start < end {
+            self.spans.push(Span { row, start, end });
+        }
+    }
+
+    /// Sorts and joins the spans, and finds the rows among them.
+    fn seal(&mut self) {
+        self.spans.sort_unstable();
+        let mut kept = 0;
+        for index in 0..self.spans.len() {
+            let span = self.spans[index];
+            match self.spans[..kept].last_mut() {
+                Some(last) if last.row == span.row && span.start <= last.end => {
+                    last.end = last.end.max(span.end);
+                }
+                _ => {
+                    self.spans[kept] = span;
+                    kept += 1;
+                }
+            }
+        }
+        self.spans.truncate(kept);
+        self.rows.clear();
+        let mut at = 0;
+        for row in 0..=self.grid.height() {
+            while self.spans.get(at).is_some_and(|span| span.row < row) {
+                at += 1;
+            }
+            self.rows.push(at as u32);
+        }
+    }
+
+    /// Of a convex outline a pixel is inside when its four corners are.
+    fn push_convex(&mut self, outline: &Outline) {
+        let scale = self.grid.pixels_per_unit();
+        let corner = self.grid.corner();
+        let place = |p: DVec2| p * scale - corner;
+        let Some((min, max)) = outline.bounds() else {
+            return;
+        };
+        let (top, bottom) = (place(min).y.ceil(), place(max).y.floor());
+        let rows = top.max(0.0) as u32..bottom.clamp(0.0, f64::from(self.grid.height())) as u32;
+        let columns = f64::from(self.grid.width());
+        let across = |y: f64| {
+            let edges = outline.edges().map(|edge| edge.mapped(scale, place));
+            edges.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), edge| {
+                let (a, b) = crossings(&edge, y);
+                (least.min(a), most.max(b))
+            })
+        };
+        let mut above = across(f64::from(rows.start));
+        for row in rows {
+            let below = across(f64::from(row + 1));
+            let start = above.0.max(below.0).ceil().clamp(0.0, columns);
+            let end = above.1.min(below.1).floor().clamp(0.0, columns);
+            self.push(row, start as u32, end as u32);
+            above = below;
+        }
+    }
+
+    fn push_covered(&mut self, shape: &Shape, scratch: &mut Scratch) {
+        let cover = Shadow::project(&[shape], &Projection::in_place(0.0));
+        let grid = self.grid;
+        let options = PixelOptions::default();
+        density::draw(&cover, &grid, &options, scratch, &mut Covered(self));
+    }
+}
+
+/// Takes what is covered wholly.
+struct Covered<'a>(&'a mut Hidden);
+
+impl Sink for Covered<'_> {
+    fn constant(&mut self, y: u32, columns: Range<u32>, density: f32) {
+        if density == 1.0 {
+            self.0.push(y, columns.start, columns.end);
+        }
+    }
+
+    fn values(&mut self, y: u32, first: u32, densities: &[f32]) {
+        for (column, density) in (first..).zip(densities) {
+            if *density == 1.0 {
+                self.0.push(y, column, column + 1);
+            }
+        }
+    }
+}
+
+/// The least and the largest x at which an edge of a convex outline crosses `y`; where it does not, they are the wrong way
+/// round.
+fn crossings(edge: &Edge, y: f64) -> (f64, f64) {
+    let (from, to) = (edge.from(), edge.to());
+    let none = (f64::INFINITY, f64::NEG_INFINITY);
+    match edge {
+        Edge::Line(_) | Edge::Border(_) => {
+            if y < from.y.min(to.y) || y > from.y.max(to.y) {
+                return none;
+            }
+            if from.y == to.y {
+                return (from.x.min(to.x), from.x.max(to.x));
+            }
+            let x = from.x + (to.x - from.x) * ((y - from.y) / (to.y - from.y));
+            (x, x)
+        }
+        Edge::Arc(arc) => {
+            let rise = y - arc.center.y;
+            let squared = arc.radius * arc.radius - rise * rise;
+            if squared < 0.0 {
+                return none;
+            }
+            let half = squared.sqrt();
+            [-half, half]
+                .into_iter()
+                .filter(|side| arc.has(DVec2::new(*side, rise)))
+                .fold(none, |(least, most), side| {
+                    let x = arc.center.x + side;
+                    (least.min(x), most.max(x))
+                })
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::path::FillRule;
+
+    fn spans(hidden: &Hidden, row: u32) -> Vec<(u32, u32)> {
+        hidden
+            .of_row(row)
+            .iter()
+            .map(|s| (s.start, s.end))
+            .collect()
+    }
+
+    #[test]
+    fn whole_pixels_are_hidden_and_no_others() {
+        let grid = Grid::new([0.0, 0.0], [30, 12], 1.0).unwrap();
+        let mut scratch = Scratch::new();
+        let mut hidden = Hidden::new(&grid);
+        hidden.add(&Shape::rect(2.5, 1.0, 10.0, 5.5).unwrap(), &mut scratch);
+        assert_eq!(spans(&hidden, 0), []);
+        assert_eq!(spans(&hidden, 1), [(3, 12)]);
+        assert_eq!(spans(&hidden, 5), [(3, 12)]);
+        assert_eq!(spans(&hidden, 6), []);
+        hidden.add(&Shape::rect(12.0, 0.0, 10.0, 3.0).unwrap(), &mut scratch);
+        assert_eq!(spans(&hidden, 1), [(3, 22)]);
+        assert_eq!(spans(&hidden, 4), [(3, 12)]);
+        let mut seen = Vec::new();
+        hidden.seen(1, 0..30, |columns| seen.push(columns));
+        assert_eq!(seen, [0..3, 22..30]);
+    }
+
+    #[test]
+    fn any_shape_hides_the_pixels_of_full_coverage() {
+        let grid = Grid::new([0.0, 0.0], [60, 60], 1.0).unwrap();
+        let ring = |side: f32| {
+            let (a, b) = (30.0 - side, 30.0 + side);
+            [[30.0, a], [b, 30.0], [30.0, b], [a, 30.0]]
+        };
+        let shapes = [
+            Shape::circle([30.0, 30.0], 20.3).unwrap(),
+            Shape::rounded_rect(3.3, 4.4, 50.0, 40.0, [0.0, 5.0, 10.0, 20.0]).unwrap(),
+            Shape::polygon(&[ring(25.0), ring(9.0)], FillRule::EvenOdd).unwrap(),
+        ];
+        for shape in shapes {
+            let mut scratch = Scratch::new();
+            let mut hidden = Hidden::new(&grid);
+            hidden.add(&shape, &mut scratch);
+            let mut coverage = vec![0; 3600];
+            let cover = Shadow::project(&[&shape], &Projection::in_place(0.0));
+            cover.fill_a8(&grid, &mut coverage, &mut scratch).unwrap();
+            let mut count = 0;
+            for row in 0..60 {
+                for column in 0..60 {
+                    let full = coverage[(row * 60 + column) as usize] == 255;
+                    if hidden.hides(column, row) {
+                        assert!(full, "{column} {row}");
+                        count += 1;
+                    }
+                }
+            }
+            let full = coverage.iter().filter(|&&c| c == 255).count();
+            assert!(count * 10 >= full * 9, "{count} of {full}");
+        }
+    }
+}
