@@ -170,7 +170,14 @@ pub(crate) fn averaged_side(radius: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use fearless_simd::Level;
+
     use super::*;
+    use crate::light::Light;
+    use crate::paint::Paint;
+    use crate::path::{FillRule, Path};
+    use crate::shape::Shape;
+    use crate::tone::Color;
 
     #[test]
     fn the_averaged_square_has_no_jump() {
@@ -179,5 +186,81 @@ mod tests {
         assert_eq!(averaged_side(2.0), 0.5);
         assert_eq!(averaged_side(3.0), 0.0);
         assert_eq!(averaged_side(100.0), 0.0);
+    }
+
+    /// Every level that this machine has, the scalar one first.
+    fn levels() -> Vec<Level> {
+        let best = Level::new();
+        let mut levels = vec![Level::Fallback(fearless_simd::Fallback::new())];
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        {
+            levels.extend(best.as_sse2().map(Level::Sse2));
+            levels.extend(best.as_sse4_2().map(Level::Sse4_2));
+            levels.extend(best.as_avx2().map(Level::Avx2));
+        }
+        levels.push(best);
+        levels
+    }
+
+    fn shapes() -> Vec<Shape> {
+        let mut blob = Path::new();
+        blob.move_to([20.0, 60.0]);
+        blob.cubic_to([20.0, 0.0], [110.0, 20.0], [100.0, 60.0]);
+        blob.cubic_to([90.0, 120.0], [20.0, 110.0], [20.0, 60.0]);
+        let ring = |side: f32| {
+            let (a, b) = (60.0 - side, 60.0 + side);
+            [[a, 60.0], [60.0, a + 3.0], [b, 60.0], [60.0, b]]
+        };
+        vec![
+            Shape::rounded_rect(20.3, 30.6, 80.0, 50.0, [4.0, 12.0, 0.0, 20.0]).unwrap(),
+            Shape::circle([60.2, 60.4], 33.0).unwrap(),
+            Shape::polygon(&[ring(45.0), ring(17.0)], FillRule::EvenOdd).unwrap(),
+            Shape::path(&blob, FillRule::NonZero).unwrap(),
+        ]
+    }
+
+    #[test]
+    fn every_simd_level_gives_the_same_bits() {
+        let grid = Grid::new([0.0, 0.0], [125, 121], 1.0).unwrap();
+        let paint = Paint::new(Color::rgb(30, 60, 90), 0.6).unwrap();
+        let methods = [
+            None,
+            Some(Method::Direct),
+            Some(Method::Grid),
+            Some(Method::NinePatch),
+        ];
+        let levels = levels();
+        println!("{levels:?}");
+        for shape in shapes() {
+            for radius in [0.0_f32, 0.2, 0.7, 1.7, 2.6, 6.0, 20.0, 45.0] {
+                let light = Light::directional([0.0, 0.0], radius).unwrap();
+                let shadow = light.cast(&shape, 1.0, 0.0).unwrap();
+                for method in methods {
+                    let options = PixelOptions {
+                        method,
+                        dither: true,
+                        ..PixelOptions::default()
+                    };
+                    let drawn = levels.iter().map(|level| {
+                        let mut scratch = Scratch::at_level(*level);
+                        let mut densities = vec![0.0; 125 * 121];
+                        let mut pixels = vec![180; 4 * 125 * 121];
+                        shadow
+                            .fill_f32(&grid, &mut densities, &options, &mut scratch)
+                            .unwrap();
+                        shadow
+                            .blend_rgba8(&grid, &mut pixels, &paint, &options, &mut scratch)
+                            .unwrap();
+                        let bits: Vec<u32> = densities.iter().map(|d| d.to_bits()).collect();
+                        (bits, pixels)
+                    });
+                    let drawn: Vec<_> = drawn.collect();
+                    assert!(
+                        drawn.windows(2).all(|pair| pair[0] == pair[1]),
+                        "{method:?}, r {radius}"
+                    );
+                }
+            }
+        }
     }
 }

@@ -127,6 +127,16 @@ impl Grid {
         }
     }
 
+    /// The rows from `first` to before `end`, in the same buffer.
+    #[cfg(feature = "rayon")]
+    pub(crate) fn band(&self, first: u32, end: u32) -> Self {
+        Self {
+            corner: self.corner + DVec2::new(0.0, f64::from(first)),
+            height: end - first,
+            ..*self
+        }
+    }
+
     /// Refuses a buffer that ends before the grid does.
     pub(crate) fn check_buffer(&self, length: usize) -> Result<()> {
         let needed = self.stride * (self.height as usize - 1) + self.width as usize;

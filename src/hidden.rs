@@ -105,6 +105,20 @@ impl Hidden {
         self.seal();
     }
 
+    /// What is hidden of a band of the grid's rows, from `first` on.
+    #[cfg(feature = "rayon")]
+    pub(crate) fn band(&self, band: &Grid, first: u32) -> Self {
+        let mut hidden = Self::new(band);
+        let rows = first..first + band.height();
+        let spans = self.spans.iter().filter(|span| rows.contains(&span.row));
+        hidden.spans.extend(spans.map(|span| Span {
+            row: span.row - first,
+            ..*span
+        }));
+        hidden.seal();
+        hidden
+    }
+
     /// The grid that it was made for.
     #[must_use]
     pub fn grid(&self) -> &Grid {

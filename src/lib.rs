@@ -62,6 +62,8 @@
 //! | `compose.rs`, `compose/` | who casts on whom; pictures and SVG |
 //! | `svg.rs` | writing SVG |
 //! | `grid.rs`, `hidden.rs`, `paint.rs` | [`Grid`], [`Hidden`], [`Paint`]: the pixels, those that nobody sees, what they take |
+//! | `nine_patch.rs` | [`NinePatch`], [`ShadowKey`]: masks that stretch, to be kept |
+//! | `parallel.rs` | bands of rows on several threads |
 //! | `scratch.rs`, `error.rs` | [`Scratch`], [`Error`] |
 //! | `bin/penumbral` | the command line |
 //!
@@ -74,6 +76,7 @@
 //! | `scene` | [`Scene::from_json`] | `serde`, `serde_json`, `svg-path` |
 //! | `cli` | the command line `penumbral` | clap, image, indicatif, `raster`, `scene` |
 //! | `lyon`, `kurbo` | paths from these crates | kurbo |
+//! | `rayon` | [`Shadow::blend_rgba8_in_bands`](crate::Shadow): drawing on several threads | rayon |
 //!
 //! # Stability guarantees
 //!
@@ -89,8 +92,11 @@ mod grid;
 mod hidden;
 mod light;
 mod mesh;
+mod nine_patch;
 mod outline;
 mod paint;
+#[cfg(feature = "rayon")]
+mod parallel;
 mod path;
 pub mod plan;
 mod scene;
@@ -112,6 +118,7 @@ pub use grid::Grid;
 pub use hidden::Hidden;
 pub use light::Light;
 pub use mesh::{MeshOptions, MeshVertex, Profile, ShadowMesh, meshes_to_svg};
+pub use nine_patch::{NinePatch, PatchPlace, ShadowKey};
 pub use paint::Paint;
 pub use path::{FillRule, Path};
 pub use scene::{Scene, Surface};

@@ -407,7 +407,7 @@ fn clear<T: Copy>(grid: &Grid, buffer: &mut [T], value: T) -> Result<()> {
 }
 
 impl PixelOptions<'_> {
-    fn check(&self, grid: &Grid) -> Result<()> {
+    pub(crate) fn check(&self, grid: &Grid) -> Result<()> {
         match self.hidden {
             Some(hidden) if !hidden.grid().has_pixels_of(grid) => Err(Error::OtherGrid {
                 field: "options.hidden",

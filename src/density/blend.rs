@@ -122,6 +122,20 @@ const BLOCK: usize = 32;
 /// The upper byte of each half of 32 bits.
 const UPPER: u32 = 0xff00_ff00;
 
+impl Rgba8<'_> {
+    /// Blends the paint by 8-bit coverage, from column `first` of row `y` on.
+    pub(crate) fn coverage(&mut self, y: u32, first: u32, mask: &[u8]) {
+        const PART: usize = 128;
+        let mut densities = [0.0; PART];
+        for (part, mask) in (0..).zip(mask.chunks(PART)) {
+            for (density, coverage) in densities.iter_mut().zip(mask) {
+                *density = f32::from(*coverage) * (1.0 / 255.0);
+            }
+            self.values(y, first + part * PART as u32, &densities[..mask.len()]);
+        }
+    }
+}
+
 impl Sink for Rgba8<'_> {
     fn constant(&mut self, y: u32, columns: Range<u32>, density: f32) {
         let thresholds = thresholds(&self.layout, y, columns.start);

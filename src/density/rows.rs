@@ -261,7 +261,8 @@ impl Rows {
     }
 
     /// Computes the row over `columns`, right of what was computed of it before.
-    #[inline(always)]
+    // One copy a SIMD level: where methods inlined it, compilers took minutes.
+    #[inline(never)]
     pub(crate) fn compute<S: Simd>(
         &mut self,
         simd: S,
@@ -309,7 +310,6 @@ impl Rows {
     }
 
     /// Computes the densities of `columns`, all within the entries' cluster.
-    #[inline(always)]
     fn cluster<S: Simd>(
         &mut self,
         simd: S,
@@ -409,45 +409,69 @@ struct Stroke<'a> {
 
 impl Stroke<'_> {
     /// Adds the piece's densities to those of the row at `y`, from the column at `offset` from `origin` on.
-    #[inline(always)]
     fn add_to<S: Simd>(&self, simd: S, y: f64, origin: i64, offset: f32, values: &mut [f32]) {
         let x = self.lattice.start + origin as f64 * self.lattice.pitch;
         let seen = DVec2::new(x, y + self.line.offset);
         match self.piece.seen_from(seen, self.lattice, self.halves) {
-            RowForm::ThroughLine(distance) => self.add(
-                simd,
-                offset,
-                values,
+            RowForm::ThroughLine(distance) => simd.vectorize(
                 #[inline(always)]
-                |columns| kernels::through_line(simd, columns, distance),
+                || {
+                    self.add(
+                        simd,
+                        offset,
+                        values,
+                        #[inline(always)]
+                        |columns| kernels::through_line(simd, columns, distance),
+                    );
+                },
             ),
-            RowForm::Line(line) => self.add(
-                simd,
-                offset,
-                values,
+            RowForm::Line(line) => simd.vectorize(
                 #[inline(always)]
-                |columns| kernels::line(simd, columns, &line),
+                || {
+                    self.add(
+                        simd,
+                        offset,
+                        values,
+                        #[inline(always)]
+                        |columns| kernels::line(simd, columns, &line),
+                    );
+                },
             ),
-            RowForm::ThroughArc(arc) => self.add(
-                simd,
-                offset,
-                values,
+            RowForm::ThroughArc(arc) => simd.vectorize(
                 #[inline(always)]
-                |columns| kernels::through_arc(simd, columns, &arc),
+                || {
+                    self.add(
+                        simd,
+                        offset,
+                        values,
+                        #[inline(always)]
+                        |columns| kernels::through_arc(simd, columns, &arc),
+                    );
+                },
             ),
-            RowForm::Arc(arc) => self.add(
-                simd,
-                offset,
-                values,
+            RowForm::Arc(arc) => simd.vectorize(
                 #[inline(always)]
-                |columns| kernels::arc(simd, columns, &arc),
+                || {
+                    self.add(
+                        simd,
+                        offset,
+                        values,
+                        #[inline(always)]
+                        |columns| kernels::arc(simd, columns, &arc),
+                    );
+                },
             ),
-            RowForm::Cut(cut) => self.add(
-                simd,
-                offset,
-                values,
+            RowForm::Cut(cut) => simd.vectorize(
                 #[inline(always)]
-                |columns| kernels::cut(simd, columns, &cut),
+                || {
+                    self.add(
+                        simd,
+                        offset,
+                        values,
+                        #[inline(always)]
+                        |columns| kernels::cut(simd, columns, &cut),
+                    );
+                },
             ),
         }
     }

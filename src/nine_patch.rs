@@ -1,0 +1,424 @@
+//! Nine-patch: a rounded rectangle's shadow as a small mask that stretches, and the key to keep it by.
+//!
+//! Such a shadow depends on radii, on where in their pixels its four sides lie, and on its size only where corners meet.
+//! The key holds these in steps so small that all shadows of one key are alike within the tolerance, and the mask is drawn
+//! from the key alone: whichever of them comes first, the bits are the same.
+
+use core::f64::consts::PI;
+
+use glam::DVec2;
+use libm::{exp, log, log1p};
+
+use crate::density::blend::{Ink, Layout, Rgba8};
+use crate::density::{PixelOptions, rounded::Rounded};
+use crate::error::{Error, Result};
+use crate::grid::Grid;
+use crate::light::Projection;
+use crate::paint::Paint;
+use crate::plan::Method;
+use crate::scratch::Scratch;
+use crate::shadow::Shadow;
+use crate::shape::{CornerRadii, Shape};
+use crate::tolerance::Tolerance;
+
+/// What masks of rounded rectangles' shadows are kept by: it tells neither where the shadow is, in whole pixels, nor its
+/// colour, and its size only where it matters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct ShadowKey {
+    /// The tolerance in 65536ths of a level.
+    levels: u32,
+    /// The penumbra radius in steps of a share of itself.
+    radius: i32,
+    /// The corners' radii, and by how much each side is past a whole pixel, in steps.
+    radii: [u32; 4],
+    sides: [u32; 4],
+    /// The distance between opposite sides' whole pixels, where the mask does not stretch.
+    size: [Option<u32>; 2],
+}
+
+/// Where a mask belongs: the shadow's pixels from `[left, top]` to before `[right, bottom]`, counted from the scene's
+/// origin.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PatchPlace {
+    /// The first column and row.
+    pub min: [i64; 2],
+    /// Those after the last.
+    pub max: [i64; 2],
+}
+
+/// A mask of 8-bit coverage that draws the shadow of every rounded rectangle with its key: corners as they are, the one
+/// column and row between them stretched.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NinePatch {
+    mask: Vec<u8>,
+    size: [u32; 2],
+    insets: [u32; 4],
+    stretches: [bool; 2],
+}
+
+/// Shares of the tolerance for rounding to steps: of a side's place, of the penumbra radius, of corners' radii.
+const SIDE: f64 = 0.2;
+const RADIUS: f64 = 0.1;
+const CORNER: f64 = 0.1;
+
+/// The sizes of the steps.
+struct Steps {
+    radius: f64,
+    side: f64,
+    corner: f64,
+}
+
+impl ShadowKey {
+    fn tolerance(&self) -> f64 {
+        f64::from(self.levels) / 65_536.0 / 255.0
+    }
+
+    /// The penumbra radius in pixels, and the steps of the rest. A step is twice what rounding may do: a side moved by d
+    /// moves the density by 2 d / (π r), by d where that is more than the pixel's own width allows; a radius larger by its
+    /// share s moves it by s / π; a corner's radius larger by d moves the outline by (sqrt 2 - 1) d.
+    fn steps(tolerance: f64, radius: i32) -> Steps {
+        let radius = exp(f64::from(radius) * log1p(2.0 * RADIUS * PI * tolerance));
+        let side = 2.0 * SIDE * tolerance * (PI * radius / 2.0).max(1.0);
+        Steps {
+            radius,
+            // A pixel has a whole number of steps.
+            side: 1.0 / (1.0 / side).ceil(),
+            corner: side * (CORNER / SIDE) / (core::f64::consts::SQRT_2 - 1.0),
+        }
+    }
+
+    /// The rectangle that the mask is drawn of, in pixels of the mask, and the mask's size and insets.
+    fn layout(&self) -> (Rounded, f64, [u32; 2], [u32; 4]) {
+        let steps = Self::steps(self.tolerance(), self.radius);
+        let radii = self.radii.map(|radius| f64::from(radius) * steps.corner);
+        let reach = reach(steps.radius);
+        let past = self.sides.map(|side| f64::from(side) * steps.side);
+        let [tl, tr, br, bl] = radii;
+        let rounds = [[tl.max(bl), tr.max(br)], [tl.max(tr), bl.max(br)]];
+        let (mut min, mut max) = (DVec2::ZERO, DVec2::ZERO);
+        let (mut size, mut insets) = ([0; 2], [0; 4]);
+        for axis in 0..2 {
+            min[axis] = reach + past[axis];
+            let near = (min[axis] + rounds[axis][0] + steps.radius).ceil() + 1.0;
+            let far = (rounds[axis][1] + steps.radius - past[axis + 2]).ceil() + 1.0;
+            let whole = match self.size[axis] {
+                Some(size) => f64::from(size) + reach,
+                None => near + 1.0 + far,
+            };
+            max[axis] = whole + past[axis + 2];
+            size[axis] = (whole + 1.0 + reach) as u32;
+            if self.size[axis].is_none() {
+                insets[axis] = near as u32;
+                insets[axis + 2] = size[axis] - near as u32 - 1;
+            } else {
+                insets[axis] = size[axis];
+            }
+        }
+        (Rounded { min, max, radii }, steps.radius, size, insets)
+    }
+}
+
+/// Whole pixels that hold a penumbra and what averaging adds.
+fn reach(radius: f64) -> f64 {
+    (radius + 0.5).ceil() + 1.0
+}
+
+impl Shadow {
+    /// The key of the shadow's mask and the place for it, on so many pixels a scene unit; none where the shadow is not one
+    /// of a rounded rectangle with circular corners, or one mask would be larger than a picture may be.
+    ///
+    /// ```
+    /// use penumbral::{Color, Grid, Light, NinePatch, Paint, Scratch, Shape, Tolerance};
+    ///
+    /// let card = Shape::rounded_rect(24.0, 40.0, 312.0, 160.0, 12.0)?;
+    /// let shadow = Light::android(360.0)?.cast(&card, 8.0, 0.0)?;
+    /// let mut scratch = Scratch::new();
+    /// let (key, place) = shadow.key(1.0, Tolerance::ONE_LEVEL).unwrap();
+    /// // Kept by `key`, for this card wherever it scrolls.
+    /// let patch = NinePatch::draw(&key, &mut scratch)?;
+    ///
+    /// let grid = Grid::new([0.0, 0.0], [360, 240], 1.0)?;
+    /// let mut canvas = vec![255; 360 * 240 * 4];
+    /// patch.blend_rgba8(place, &grid, &mut canvas, &Paint::new(Color::BLACK, 0.19)?, &mut scratch)?;
+    /// # Ok::<(), penumbral::Error>(())
+    /// ```
+    #[must_use]
+    pub fn key(
+        &self,
+        pixels_per_unit: f32,
+        tolerance: Tolerance,
+    ) -> Option<(ShadowKey, PatchPlace)> {
+        let scale = f64::from(pixels_per_unit);
+        let rounded = self
+            .rounded()
+            .filter(|_| scale > 0.0 && self.radius() > 0.0)?;
+        let levels = (tolerance.as_levels() * 65_536.0) as u32;
+        let share = f64::from(levels) / 65_536.0 / 255.0;
+        let radius_step = log1p(2.0 * RADIUS * PI * share);
+        let radius = (log(self.radius() * scale) / radius_step).round() as i32;
+        let steps = ShadowKey::steps(share, radius);
+        let mut key = ShadowKey {
+            levels,
+            radius,
+            radii: rounded
+                .radii
+                .map(|r| (r * scale / steps.corner).round() as u32),
+            sides: [0; 4],
+            size: [None; 2],
+        };
+        let reach = reach(steps.radius) as i64;
+        let corners = [rounded.min, rounded.max].map(|corner| corner * scale);
+        let mut place = PatchPlace {
+            min: [0; 2],
+            max: [0; 2],
+        };
+        for axis in 0..2 {
+            let [near, far] = corners.map(|corner| {
+                let whole = corner[axis].floor();
+                let past = ((corner[axis] - whole) / steps.side).round();
+                // A side just below a whole pixel rounds up to it.
+                if past < (1.0 / steps.side).round() {
+                    (whole, past as u32)
+                } else {
+                    (whole + 1.0, 0)
+                }
+            });
+            key.sides[axis] = near.1;
+            key.sides[axis + 2] = far.1;
+            place.min[axis] = near.0 as i64 - reach;
+            place.max[axis] = far.0 as i64 + 1 + reach;
+        }
+        for axis in 0..2 {
+            let (_, _, size, _) = key.layout();
+            let extent = place.max[axis] - place.min[axis];
+            if extent < i64::from(size[axis]) {
+                key.size[axis] = u32::try_from(extent - 1 - 2 * reach).ok();
+                key.size[axis]?;
+            }
+        }
+        let (_, _, [width, height], _) = key.layout();
+        Grid::new([0.0, 0.0], [width, height], 1.0).ok()?;
+        Some((key, place))
+    }
+}
+
+impl NinePatch {
+    /// Draws the mask of a key.
+    ///
+    /// # Errors
+    /// None for keys from [`Shadow::key`].
+    pub fn draw(key: &ShadowKey, scratch: &mut Scratch) -> Result<Self> {
+        let (rounded, radius, size, insets) = key.layout();
+        let side = rounded.max - rounded.min;
+        let [x, y, width, height] =
+            [rounded.min.x, rounded.min.y, side.x, side.y].map(|v| v as f32);
+        let radii = CornerRadii::from(rounded.radii.map(|r| r as f32));
+        let shape = Shape::rounded_rect(x, y, width, height, radii)?;
+        let shadow = Shadow::project(&[shape], &Projection::in_place(radius));
+        let grid = Grid::new([0.0, 0.0], size, 1.0)?;
+        let mut mask = vec![0; size[0] as usize * size[1] as usize];
+        let options = PixelOptions {
+            // It is drawn once and used often.
+            method: Some(Method::Direct),
+            ..PixelOptions::default()
+        };
+        shadow.fill_a8_with(&grid, &mut mask, &options, scratch)?;
+        Ok(Self {
+            mask,
+            size,
+            insets,
+            stretches: key.size.map(|size| size.is_none()),
+        })
+    }
+
+    /// The coverage, row by row, 0 to 255.
+    #[must_use]
+    pub fn mask(&self) -> &[u8] {
+        &self.mask
+    }
+
+    /// Columns and rows.
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// The pixels left, top, right and bottom that are not stretched: between them lies one column, and one row. Where the
+    /// mask does not stretch along an axis, the first is all of it.
+    #[must_use]
+    pub fn insets(&self) -> [u32; 4] {
+        self.insets
+    }
+
+    /// Blends the mask, stretched to its place, onto premultiplied RGBA8 pixels, source over.
+    ///
+    /// # Errors
+    /// [`Error::BufferSize`] when `pixels` is shorter than the grid needs; [`Error::OutOfRange`] for a place of another key,
+    /// smaller than the mask or of another size where it does not stretch.
+    pub fn blend_rgba8(
+        &self,
+        place: PatchPlace,
+        grid: &Grid,
+        pixels: &mut [u8],
+        paint: &Paint,
+        scratch: &mut Scratch,
+    ) -> Result<()> {
+        grid.check_buffer(pixels.len() / 4)?;
+        for axis in 0..2 {
+            let extent = place.max[axis] - place.min[axis];
+            let least = i64::from(self.size[axis]);
+            if extent < least || extent > least && !self.stretches[axis] {
+                return Err(Error::OutOfRange {
+                    field: "place",
+                    value: extent as f64,
+                    min: least as f64,
+                    max: if self.stretches[axis] {
+                        f64::INFINITY
+                    } else {
+                        least as f64
+                    },
+                });
+            }
+        }
+        let corner = grid.corner().floor();
+        let first = [corner.x as i64, corner.y as i64];
+        let mut canvas = Rgba8 {
+            level: scratch.level(),
+            pixels,
+            layout: Layout {
+                stride: grid.stride(),
+                dither: None,
+            },
+            ink: Ink::new(paint),
+        };
+        let [left, top, right, bottom] = self.insets.map(i64::from);
+        let height = i64::from(grid.height());
+        for row in (place.min[1] - first[1]).max(0)..(place.max[1] - first[1]).min(height) {
+            let down = row + first[1] - place.min[1];
+            let up = place.max[1] - place.min[1] - down;
+            // Of the stretched rows all are the one between the insets.
+            let from = if down < top {
+                down
+            } else if up <= bottom {
+                i64::from(self.size[1]) - up
+            } else {
+                top
+            };
+            let start = (from * i64::from(self.size[0])) as usize;
+            let mask = &self.mask[start..start + self.size[0] as usize];
+            let columns = [place.min[0] - first[0], place.max[0] - first[0]];
+            self.blend_row(
+                &mut canvas,
+                row as u32,
+                columns,
+                [left, right],
+                mask,
+                grid.width(),
+            );
+        }
+        Ok(())
+    }
+
+    fn blend_row(
+        &self,
+        canvas: &mut Rgba8<'_>,
+        row: u32,
+        [start, end]: [i64; 2],
+        [left, right]: [i64; 2],
+        mask: &[u8],
+        width: u32,
+    ) {
+        let on_grid = |column: i64| column.clamp(0, i64::from(width));
+        let mut part = |from: i64, to: i64, mask: &[u8]| {
+            let (first, last) = (on_grid(from), on_grid(to));
+            if first < last {
+                let mask = &mask[(first - from) as usize..(last - from) as usize];
+                canvas.coverage(row, first as u32, mask);
+            }
+        };
+        part(start, start + left, &mask[..left as usize]);
+        if self.stretches[0] {
+            part(end - right, end, &mask[left as usize + 1..]);
+            let (first, last) = (on_grid(start + left), on_grid(end - right));
+            if first < last {
+                let density = f32::from(mask[left as usize]) / 255.0;
+                crate::density::Sink::constant(canvas, row, first as u32..last as u32, density);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::light::Light;
+    use crate::tone::Color;
+
+    fn cards() -> impl Iterator<Item = Shadow> {
+        let cards = [
+            (40.0, 30.0, 90.0, 60.0, 12.0),
+            (40.3, 30.7, 90.25, 60.5, 8.0),
+            (50.0, 40.0, 20.0, 70.0, 0.0),
+            (45.5, 40.1, 56.0, 56.0, 28.0),
+            (30.0, 60.0, 120.0, 3.0, 1.5),
+        ];
+        cards.into_iter().flat_map(|(x, y, width, height, corner)| {
+            [0.3_f32, 2.0, 5.4, 10.8, 25.0].map(|radius| {
+                let card = Shape::rounded_rect(x, y, width, height, corner).unwrap();
+                let light = Light::directional([0.0, 0.0], radius).unwrap();
+                light.cast(&card, 1.0, 0.0).unwrap()
+            })
+        })
+    }
+
+    #[test]
+    fn masks_draw_what_their_shadows_are() {
+        let grid = Grid::new([0.0, 0.0], [180, 160], 1.0).unwrap();
+        let mut scratch = Scratch::new();
+        let paint = Paint::new(Color::BLACK, 1.0).unwrap();
+        for shadow in cards() {
+            let (key, place) = shadow.key(1.0, Tolerance::ONE_LEVEL).unwrap();
+            let patch = NinePatch::draw(&key, &mut scratch).unwrap();
+            let mut pixels = vec![0; 4 * 180 * 160];
+            patch
+                .blend_rgba8(place, &grid, &mut pixels, &paint, &mut scratch)
+                .unwrap();
+            let mut exact = vec![0.0; 180 * 160];
+            let options = PixelOptions {
+                method: Some(Method::Exact),
+                ..PixelOptions::default()
+            };
+            shadow
+                .fill_f32(&grid, &mut exact, &options, &mut scratch)
+                .unwrap();
+            let errors = pixels.chunks_exact(4).zip(&exact);
+            let worst = errors
+                .map(|(pixel, exact)| (f32::from(pixel[3]) - exact * 255.0).abs())
+                .fold(0.0, f32::max);
+            // The tolerance, the mask's rounding and the canvas's.
+            assert!(worst <= 2.0, "{key:?}: {worst} levels");
+        }
+    }
+
+    #[test]
+    fn keys_tell_neither_place_nor_size() {
+        let light = Light::directional([0.0, 0.0], 8.0).unwrap();
+        let key = |x: f32, y: f32, width: f32| {
+            let card = Shape::rounded_rect(x, y, width, 80.0, 12.0).unwrap();
+            let shadow = light.cast(&card, 1.0, 0.0).unwrap();
+            shadow.key(1.0, Tolerance::ONE_LEVEL).unwrap()
+        };
+        let (here, place) = key(10.25, 20.0, 100.0);
+        let (there, moved) = key(310.25, 1020.0, 164.0);
+        assert_eq!(here, there);
+        assert_eq!(moved.min, [place.min[0] + 300, place.min[1] + 1000]);
+        assert_eq!(
+            moved.max[0] - moved.min[0],
+            place.max[0] - place.min[0] + 64
+        );
+        assert_ne!(here, key(10.5, 20.0, 100.0).0);
+        // A hundredth of a pixel is below the tolerance, a hair before a whole one is that one.
+        assert_eq!(key(10.0, 20.0, 100.0).0, key(10.001, 20.0, 100.0).0);
+        assert_eq!(key(10.0, 20.0, 100.0), key(9.9999, 20.0, 100.0));
+    }
+}
