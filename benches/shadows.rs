@@ -1,6 +1,23 @@
-//! The way from a shape to a picture, step by step: cast, exact, mesh, raster, render.
+//! The way from a shape to a picture, step by step, and what pixels cost by each method. A group a step:
 //!
-//! Run all with `cargo bench --features scene`, one step with `cargo bench --features scene -- exact`.
+//! | group | what is timed | names |
+//! |---|---|---|
+//! | `cast` | projecting a shape | shape |
+//! | `exact`, `direct`, `grid`, `nine-patch` | blending a shadow by that method | shape / pixels a unit / r |
+//! | `auto` | the same by the method that the plan chooses | shape / pixels a unit / r |
+//! | `outputs` | one card blended plainly, dithered, with itself over it; as coverage, as densities; hiding it | output |
+//! | `area` | a card of so many pixels' side at r = 8 | side |
+//! | `radius` | concave paths and a card on their way from narrow to wide penumbrae | shape / r |
+//! | `cards` | 100 cards on 1920 x 1080: projecting them, blending all, blending what opaque cards leave to be seen | part |
+//! | `mesh`, `raster` | a shadow's triangles at a tolerance in levels; their densities on pixels | shape (/ levels) |
+//! | `render` | whole pictures of scenes | scene |
+//!
+//! The penumbra radius r is in pixels, whatever the scale. Throughputs count the pixels of the shadow's bounds.
+//!
+//!     cargo bench --features scene -- --quick             # all, roughly, in minutes
+//!     cargo bench --features scene -- ^direct/            # one group
+//!     cargo bench --features scene -- --quick direct/card # one shape of it
+//!     cargo bench --features scene -- --test              # that all of it runs
 
 #![expect(
     clippy::unwrap_used,
@@ -8,39 +25,107 @@
 )]
 
 use std::hint::black_box;
+use std::time::Duration;
 
-use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use penumbral::{FillRule, Grid, Light, Path, Renderer, Scene, Scratch, Shadow, Shape, Tolerance};
+use criterion::measurement::WallTime;
+use criterion::{
+    BenchmarkGroup, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main,
+};
+use penumbral::plan::Method;
+use penumbral::{
+    Color, FillRule, Grid, Hidden, Light, Paint, Path, PixelOptions, Renderer, Scene, Scratch,
+    Shadow, Shape, Tolerance,
+};
 use tiny_skia::Pixmap;
 
-/// The picture that shadows are drawn on, in pixels.
-const SIDE: u32 = 400;
+const HEART: &str = "M180 280C60 200 40 130 70 95C105 55 160 70 180 115C200 70 255 55 290 95C320 130 300 200 180 280Z";
+const STAR: &str = "M180 55L208.2 136.2 294.1 137.9 225.7 189.8 250.5 272.1 180 223 109.5 272.1 134.3 189.8 65.9 137.9 151.8 136.2Z";
+const RING: &str = "M170 50A115 115 0 1 1 169.99 50ZM170 120A45 45 0 1 0 170.01 120Z";
+const LETTER_L: &str = "M60 60H130V190H250V260H60Z";
 
-fn shapes() -> [(&'static str, Shape); 3] {
-    let heart = "M180 280C60 200 40 130 70 95C105 55 160 70 180 115C200 70 255 55 290 95C320 130 300 200 180 280Z";
-    let heart = Path::from_svg(heart).unwrap();
-    let star: Vec<[f32; 2]> = (0_u8..10)
-        .map(|i| {
-            let (sin, cos) = (f32::from(i) * core::f32::consts::PI / 5.0).sin_cos();
-            let radius = if i % 2 == 0 { 120.0 } else { 48.0 };
-            [200.0 + radius * sin, 200.0 - radius * cos]
-        })
-        .collect();
+/// The penumbra radii of the methods' groups, in pixels.
+const RADII: [f32; 6] = [0.0, 0.5, 2.0, 8.0, 32.0, 128.0];
+/// The pixels a scene unit of the methods' groups.
+const SCALES: [f32; 2] = [1.0, 3.0];
+
+fn path(data: &str) -> Shape {
+    Shape::path(&Path::from_svg(data).unwrap(), FillRule::NonZero).unwrap()
+}
+
+fn rounded(width: f32, height: f32, radius: f32) -> Shape {
+    Shape::rounded_rect(60.0, 60.0, width, height, radius).unwrap()
+}
+
+fn card() -> Shape {
+    rounded(280.0, 160.0, 12.0)
+}
+
+/// Rounded rectangles and circles: what the nine-patch draws.
+fn rounded_shapes() -> [(&'static str, Shape); 4] {
     [
-        (
-            "card",
-            Shape::rounded_rect(60.0, 120.0, 280.0, 160.0, 12.0).unwrap(),
-        ),
-        ("star", Shape::polygon(&[star], FillRule::NonZero).unwrap()),
-        ("heart", Shape::path(&heart, FillRule::NonZero).unwrap()),
+        ("card", card()),
+        ("pill", rounded(300.0, 64.0, 32.0)),
+        ("circle", Shape::circle([88.0, 88.0], 28.0).unwrap()),
+        ("button", rounded(56.0, 56.0, 16.0)),
     ]
 }
 
+fn shapes() -> Vec<(&'static str, Shape)> {
+    let mut shapes = rounded_shapes().to_vec();
+    shapes.extend([("star", STAR), ("heart", HEART), ("ring", RING)].map(|(n, d)| (n, path(d))));
+    shapes
+}
+
+/// A shape's shadow right below it, `radius` in scene units.
 fn shadow(shape: &Shape, radius: f32) -> Shadow {
-    Light::directional([0.0, 0.0], radius)
-        .unwrap()
-        .cast(shape, 1.0, 0.0)
-        .unwrap()
+    let light = Light::directional([0.0, 0.0], radius).unwrap();
+    light.cast(shape, 1.0, 0.0).unwrap()
+}
+
+fn pixels(grid: &Grid) -> usize {
+    grid.width() as usize * grid.height() as usize
+}
+
+/// A shadow with the pixels of its bounds.
+struct Picture {
+    shadow: Shadow,
+    grid: Grid,
+    scratch: Scratch,
+}
+
+impl Picture {
+    /// At so many pixels a scene unit; `radius` in pixels.
+    fn new(shape: &Shape, radius: f32, scale: f32) -> Self {
+        let shadow = shadow(shape, radius / scale);
+        let bounds = shadow.bounds().unwrap();
+        let first = bounds.min.map(|v| (v * scale).floor());
+        let end = bounds.max.map(|v| (v * scale).ceil());
+        let size = [0, 1].map(|axis| (end[axis] - first[axis]) as u32);
+        Self {
+            shadow,
+            grid: Grid::new(first.map(|v| v / scale), size, scale).unwrap(),
+            scratch: Scratch::new(),
+        }
+    }
+
+    /// Times its blending onto RGBA8 pixels.
+    fn blend(
+        &mut self,
+        group: &mut BenchmarkGroup<'_, WallTime>,
+        id: BenchmarkId,
+        options: &PixelOptions<'_>,
+    ) {
+        let mut canvas = vec![255; 4 * pixels(&self.grid)];
+        let paint = Paint::new(Color::BLACK, 0.19).unwrap();
+        group.throughput(Throughput::Elements(pixels(&self.grid) as u64));
+        group.bench_function(id, |b| {
+            b.iter(|| {
+                black_box(&self.shadow)
+                    .blend_rgba8(&self.grid, &mut canvas, &paint, options, &mut self.scratch)
+                    .unwrap();
+            });
+        });
+    }
 }
 
 fn cast(c: &mut Criterion) {
@@ -54,25 +139,140 @@ fn cast(c: &mut Criterion) {
     group.finish();
 }
 
-fn exact(c: &mut Criterion) {
-    let grid = Grid::new([0.0, 0.0], [SIDE, SIDE], 1.0).unwrap();
-    let mut group = c.benchmark_group("exact");
-    group.throughput(Throughput::Elements(u64::from(SIDE * SIDE)));
-    group.sample_size(10);
-    let mut mask = vec![0; (SIDE * SIDE) as usize];
-    let mut scratch = Scratch::new();
-    for (name, shape) in shapes() {
-        for radius in [0.0, 0.5, 2.0, 8.0, 32.0] {
-            let shadow = shadow(&shape, radius);
-            group.bench_function(BenchmarkId::new(name, radius), |b| {
-                b.iter(|| {
-                    black_box(&shadow)
-                        .fill_a8(&grid, &mut mask, &mut scratch)
-                        .unwrap();
-                });
-            });
+fn methods(c: &mut Criterion) {
+    blend_by(c, Some(Method::Exact), &shapes());
+    blend_by(c, Some(Method::Direct), &shapes());
+    blend_by(c, Some(Method::Grid), &shapes());
+    blend_by(c, Some(Method::NinePatch), &rounded_shapes());
+    blend_by(c, None, &shapes());
+}
+
+/// One method over shapes, sizes and radii, as far as it is one of its own there and not too slow.
+fn blend_by(c: &mut Criterion, method: Option<Method>, shapes: &[(&str, Shape)]) {
+    let name = method.map_or("auto".to_owned(), |method| method.to_string());
+    let options = PixelOptions {
+        method,
+        ..PixelOptions::default()
+    };
+    let mut group = c.benchmark_group(name);
+    if method == Some(Method::Exact) {
+        group.sample_size(10);
+    }
+    for (name, shape) in shapes {
+        for scale in SCALES {
+            for radius in RADII {
+                // Narrower penumbrae are averaged over pixels: by the exact method slowly, by two others not at all.
+                let wide = radius >= 3.0;
+                let drawn = match method {
+                    Some(Method::Exact) => wide || scale == 1.0,
+                    Some(Method::Grid | Method::NinePatch) => wide,
+                    _ => true,
+                };
+                if drawn {
+                    let id = BenchmarkId::new(format!("{name}/{scale}x"), radius);
+                    Picture::new(shape, radius, scale).blend(&mut group, id, &options);
+                }
+            }
         }
     }
+    group.finish();
+}
+
+fn outputs(c: &mut Criterion) {
+    let mut group = c.benchmark_group("outputs");
+    let card = card();
+    let mut picture = Picture::new(&card, 8.0, 1.0);
+    let mut hidden = Hidden::new(&picture.grid);
+    hidden.add(&card, &mut picture.scratch);
+    let options = PixelOptions::default();
+    let (mut dither, mut seen) = (options, options);
+    (dither.dither, seen.hidden) = (true, Some(&hidden));
+    for (name, options) in [("plain", options), ("dithered", dither), ("hidden", seen)] {
+        let id = BenchmarkId::new("rgba8", name);
+        picture.blend(&mut group, id, &options);
+    }
+    let (grid, scratch) = (picture.grid, &mut picture.scratch);
+    let (mut mask, mut densities) = (vec![0; pixels(&grid)], vec![0.0; pixels(&grid)]);
+    let shadow = black_box(&picture.shadow);
+    group.bench_function("a8", |b| {
+        b.iter(|| shadow.fill_a8(&grid, &mut mask, scratch).unwrap());
+    });
+    group.bench_function("f32", |b| {
+        b.iter(|| {
+            shadow
+                .fill_f32(&grid, &mut densities, &options, scratch)
+                .unwrap();
+        });
+    });
+    group.bench_function("hide-card", |b| {
+        b.iter(|| {
+            hidden.reset(&grid);
+            hidden.add(black_box(&card), scratch);
+        });
+    });
+    group.finish();
+}
+
+fn area(c: &mut Criterion) {
+    let mut group = c.benchmark_group("area");
+    for side in [100.0, 200.0, 400.0, 800.0] {
+        let mut picture = Picture::new(&rounded(side, side, 12.0), 8.0, 1.0);
+        let id = BenchmarkId::from_parameter(side);
+        picture.blend(&mut group, id, &PixelOptions::default());
+    }
+    group.finish();
+}
+
+fn radius(c: &mut Criterion) {
+    let mut group = c.benchmark_group("radius");
+    for (name, shape) in [
+        ("heart", path(HEART)),
+        ("l", path(LETTER_L)),
+        ("card", card()),
+    ] {
+        for radius in [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0] {
+            let mut picture = Picture::new(&shape, radius, 1.0);
+            let id = BenchmarkId::new(name, radius);
+            picture.blend(&mut group, id, &PixelOptions::default());
+        }
+    }
+    group.finish();
+}
+
+fn fixture(name: &str) -> Scene {
+    let path = format!("{}/fixtures/{name}.json", env!("CARGO_MANIFEST_DIR"));
+    Scene::from_json(&std::fs::read_to_string(path).unwrap()).unwrap()
+}
+
+fn cards(c: &mut Criterion) {
+    let mut group = c.benchmark_group("cards");
+    let scene = fixture("truth/cards-100-1080p");
+    let grid = scene.grid().unwrap();
+    let (mut hidden, mut scratch) = (Hidden::new(&grid), Scratch::new());
+    let mut canvas = vec![255; 4 * pixels(&grid)];
+    group.bench_function("project", |b| {
+        b.iter(|| black_box(&scene).ground_shadows().unwrap());
+    });
+    let shadows = scene.ground_shadows().unwrap();
+    group.bench_function("transparent", |b| {
+        b.iter(|| {
+            black_box(&shadows)
+                .blend_rgba8(&mut canvas, &PixelOptions::default(), &mut scratch)
+                .unwrap();
+        });
+    });
+    group.bench_function("opaque", |b| {
+        b.iter(|| {
+            black_box(&shadows).hide_covered(&mut hidden, &mut scratch);
+            let options = PixelOptions {
+                hidden: Some(&hidden),
+                ..PixelOptions::default()
+            };
+            shadows
+                .blend_rgba8(&mut canvas, &options, &mut scratch)
+                .unwrap();
+        });
+    });
     group.finish();
 }
 
@@ -92,14 +292,18 @@ fn mesh(c: &mut Criterion) {
 }
 
 fn raster(c: &mut Criterion) {
-    let grid = Grid::new([0.0, 0.0], [SIDE, SIDE], 1.0).unwrap();
     let mut group = c.benchmark_group("raster");
-    group.throughput(Throughput::Elements(u64::from(SIDE * SIDE)));
-    let mut densities = vec![0.0; (SIDE * SIDE) as usize];
     for (name, shape) in shapes() {
-        let mesh = shadow(&shape, 10.0).mesh(Tolerance::ONE_LEVEL);
+        let picture = Picture::new(&shape, 10.0, 1.0);
+        let mesh = picture.shadow.mesh(Tolerance::ONE_LEVEL);
+        let mut densities = vec![0.0; pixels(&picture.grid)];
+        group.throughput(Throughput::Elements(densities.len() as u64));
         group.bench_function(name, |b| {
-            b.iter(|| black_box(&mesh).rasterize(&grid, &mut densities).unwrap());
+            b.iter(|| {
+                black_box(&mesh)
+                    .rasterize(&picture.grid, &mut densities)
+                    .unwrap();
+            });
         });
     }
     group.finish();
@@ -109,8 +313,7 @@ fn render(c: &mut Criterion) {
     let mut group = c.benchmark_group("render");
     group.sample_size(10);
     for name in ["card-list", "dialog-over-list", "landing-page"] {
-        let path = format!("{}/fixtures/scenes/{name}.json", env!("CARGO_MANIFEST_DIR"));
-        let scene = Scene::from_json(&std::fs::read_to_string(path).unwrap()).unwrap();
+        let scene = fixture(&format!("scenes/{name}"));
         let grid = scene.grid().unwrap();
         let mut pixmap = Pixmap::new(grid.width(), grid.height()).unwrap();
         let mut renderer = Renderer::new();
@@ -121,5 +324,17 @@ fn render(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, cast, exact, mesh, raster, render);
+/// There are hundreds of benches: each takes a second or two.
+fn brief() -> Criterion {
+    Criterion::default()
+        .warm_up_time(Duration::from_millis(300))
+        .measurement_time(Duration::from_secs(1))
+        .sample_size(30)
+}
+
+criterion_group! {
+    name = benches;
+    config = brief();
+    targets = cast, methods, outputs, area, radius, cards, mesh, raster, render
+}
 criterion_main!(benches);

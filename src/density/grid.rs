@@ -23,11 +23,11 @@ use crate::scratch::Scratch;
 const RING: usize = 8;
 
 /// The steps a penumbra radius for a tolerance of one level.
-const STEPS: f64 = 10.0;
+const STEPS: f64 = 14.0;
 
 /// The steps a penumbra radius that keep the penumbra's ends within a tolerance: their error falls with the power of 1.5.
 pub(crate) fn steps(levels: f64) -> f64 {
-    STEPS * libm::pow(1.0 / levels, 1.0 / 1.5)
+    STEPS * libm::pow(1.0 / levels, if levels < 1.0 { 1.0 / 1.5 } else { 0.5 })
 }
 
 /// Columns of the lattice before the shadow begins.
@@ -138,18 +138,23 @@ pub(crate) fn fill<S: Simd>(
         }
         let number = (line - frame.first[1]) as u32;
         seen_columns(options.hidden, number, frame, &columns, wanted);
-        let weights = cubic_weights(place.fract());
+        let woven = Woven {
+            knot,
+            weights: cubic_weights(place.fract()),
+            number,
+            origin,
+        };
         for wanted in wanted.iter() {
             let mut at = wanted.start;
             for coarse in 0..weaver.kept.coarse.len() {
                 let coarse = weaver.kept.coarse[coarse].clone();
                 let coarse = coarse.start.max(at)..coarse.end.min(wanted.end);
                 if !coarse.is_empty() {
-                    weaver.give(simd, knot, weights, at..coarse.start, number, origin, sink);
+                    weaver.give(simd, &woven, at..coarse.start, sink);
                     at = coarse.end;
                 }
             }
-            weaver.give(simd, knot, weights, at..wanted.end, number, origin, sink);
+            weaver.give(simd, &woven, at..wanted.end, sink);
         }
         if !weaver.kept.coarse.is_empty() {
             let y = (line as f64 + frame.phase.y + 0.5) / radius;
@@ -170,7 +175,7 @@ pub(crate) fn fill<S: Simd>(
 
 /// How far a knot may be from what its neighbours at twice the spacing foretell, over the tolerance. At the penumbra's
 /// ends that is 2.8 times the error between knots, at the tip of a cone twice.
-const LIMIT: f64 = 1.7;
+const LIMIT: f64 = 0.9;
 
 /// The sum of the first four densities by their weights.
 #[inline(always)]
@@ -191,6 +196,15 @@ fn foretold<S: Simd>(simd: S, [a, b, c, d]: [&[f32]; 4]) -> f32x8<S> {
     let near = f32x8::from_slice(simd, &b[..LANES]) + f32x8::from_slice(simd, &c[..LANES]);
     let far = f32x8::from_slice(simd, &a[..LANES]) + f32x8::from_slice(simd, &d[..LANES]);
     near * (9.0 / 16.0) - far * (1.0 / 16.0)
+}
+
+/// A line of pixels: the row of the lattice above it, the weights of the four rows about it, its number on the grid and the
+/// column at which the grid begins.
+struct Woven {
+    knot: i64,
+    weights: [f32; 4],
+    number: u32,
+    origin: i64,
 }
 
 /// Goes down the lattice row by row.
@@ -317,11 +331,12 @@ impl Weaver<'_> {
         let kept = &mut *self.kept;
         kept.coarse.clear();
         let [above, below] = &kept.surprises;
+        // A peak between knots shows at those beyond the cell as well.
         for index in 3..above.len().saturating_sub(4) {
-            let worst = above[index]
-                .max(above[index + 1])
-                .max(below[index])
-                .max(below[index + 1]);
+            let near = above[index - 1..index + 3].iter();
+            let worst = near
+                .chain(&below[index - 1..index + 3])
+                .fold(0.0, |a: f32, b| a.max(*b));
             if worst <= self.limit {
                 continue;
             }
@@ -373,16 +388,13 @@ impl Weaver<'_> {
 
     /// Gives `sink` the pixels of a line below a row of the lattice, interpolated.
     #[inline(always)]
-    fn give<S: Simd>(
-        &mut self,
-        simd: S,
-        row: i64,
-        weights: [f32; 4],
-        columns: Range<i64>,
-        number: u32,
-        origin: i64,
-        sink: &mut dyn Sink,
-    ) {
+    fn give<S: Simd>(&mut self, simd: S, line: &Woven, columns: Range<i64>, sink: &mut dyn Sink) {
+        let Woven {
+            knot: row,
+            weights,
+            number,
+            origin,
+        } = *line;
         let GridScratch { ring, values, .. } = &mut *self.kept;
         let rows =
             [-1, 0, 1, 2].map(|offset| &ring[(row + offset).rem_euclid(RING as i64) as usize]);

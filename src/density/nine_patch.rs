@@ -233,10 +233,10 @@ fn lay_out<S: Simd>(
     let share = SHARE * tolerance / (across * down);
 
     let zones = if apart { 2 } else { 1 };
-    for index in 0..zones {
+    for (index, range) in ranges.iter().enumerate().take(zones) {
         let zone = &mut kept.zones[index];
-        zone.start = ranges[index].0.ceil() as i64;
-        zone.end = ranges[index].1.floor() as i64 + 1;
+        zone.start = range.0.ceil() as i64;
+        zone.end = range.1.floor() as i64 + 1;
         zone.still = false;
         zone.sides.count = 0;
         zone.spandrels.count = 0;
@@ -295,7 +295,7 @@ const SHARE: f64 = 0.75;
 /// The steps a penumbra radius that keep a spandrel's interpolation within `levels`: measured over many ratios, the largest
 /// error is below min(ratio, 1.3) levels at 8 steps, and falls with their number to the power of 1.6.
 fn steps(ratio: f64, levels: f64) -> u32 {
-    let steps = 8.0 * libm::pow(ratio.min(1.3) / levels, 1.0 / 1.6);
+    let steps = 10.0 * libm::pow(ratio.min(1.3) / levels, 1.0 / 1.6);
     (steps.ceil() as u32).max(3)
 }
 

@@ -147,6 +147,8 @@ pub(crate) struct Rows {
     /// Steps left of the columns that are drawn.
     before: i64,
     y: f64,
+    /// Where the entries of a cluster end, and their steps.
+    steps: Vec<(i64, i64)>,
     spans: Vec<Span>,
     values: Vec<f32>,
     /// Up to where rows are the same as the last.
@@ -324,9 +326,24 @@ impl Rows {
         let start = self.values.len();
         let left = columns.start - stride;
         let count = (columns.end + stride - left) as usize;
-        self.values
-            .resize(start + count, (base as f64 / UNIT) as f32);
+        self.values.resize(start + count, 0.0);
         let values = &mut self.values[start..];
+        // Steps are summed before they are rounded: what lies left of the columns that are drawn changes nothing.
+        self.steps.clear();
+        let stepping = self.order[cluster.clone()].iter();
+        self.steps.extend(stepping.map(|&index| {
+            let entry = &self.entries[index as usize];
+            (entry.end, entry.step)
+        }));
+        self.steps.sort_unstable();
+        let (mut sum, mut at) = (base, 0);
+        for &(end, step) in &self.steps {
+            let end = (end - left).clamp(at as i64, count as i64) as usize;
+            values[at..end].fill((sum as f64 / UNIT) as f32);
+            sum += step;
+            at = end;
+        }
+        values[at..].fill((sum as f64 / UNIT) as f32);
         for &index in &self.order[cluster] {
             let entry = &self.entries[index as usize];
             let skipped = (columns.start - entry.first).max(0) / stride;
@@ -352,13 +369,6 @@ impl Rows {
                     stroke.add_to(simd, self.y, origin, (column - origin) as f32, now);
                     part = rest;
                     column += stop;
-                }
-            }
-            let after = entry.end.max(columns.start);
-            if entry.step != 0 && after < columns.end {
-                let step = (entry.step as f64 / UNIT) as f32;
-                for value in &mut values[(after - left) as usize..(columns.end - left) as usize] {
-                    *value += step;
                 }
             }
         }

@@ -21,17 +21,14 @@ const MOST: usize = 6;
 
 /// Below this penumbra radius in pixels, squares averaged over the disc take fewer points than discs averaged over the
 /// square.
-const SQUARES: f64 = 0.5;
+const SQUARES: f64 = 0.42;
 
 /// Nodes and weights of the Gauss-Legendre rules on -1 to 1, the half that is not negative (Abramowitz & Stegun 1964, table
 /// 25.4).
 const GAUSS: [&[(f64, f64)]; 6] = [
     &[(0.0, 2.0)],
     &[(0.577_350_269_189_625_8, 1.0)],
-    &[
-        (0.0, 0.888_888_888_888_888_9),
-        (0.774_596_669_241_483_4, 0.555_555_555_555_555_6),
-    ],
+    &[(0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)],
     &[
         (0.339_981_043_584_856_3, 0.652_145_154_862_546_1),
         (0.861_136_311_594_052_6, 0.347_854_845_137_453_86),
@@ -70,10 +67,11 @@ impl Sampling {
             (sampling.window, sampling.unit) = (Window::Square, 1.0);
         } else if radius < SQUARES {
             (sampling.window, sampling.unit) = (Window::Square, 1.0);
-            sampling.over_disc(radius, if radius < 0.3 { 4 } else { 6 });
+            sampling.over_disc(radius, if radius < 0.15 { 4 } else { 6 });
         } else if radius < 3.0 {
             let count = match radius {
-                ..1.1 => 5,
+                ..0.6 => 6,
+                0.6..1.1 => 5,
                 1.1..2.0 => 3,
                 _ => 2,
             };

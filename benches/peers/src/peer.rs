@@ -13,7 +13,8 @@ pub(crate) trait Peer {
     /// The crate, and which of its ways.
     fn name(&self) -> &'static str;
 
-    /// Whether what it draws is meant to be the scene's density: floors only move memory.
+    /// Whether what it draws is meant to be the scene's density on every pixel: floors only move memory, and where opaque
+    /// casters hide the ground nothing is drawn.
     fn draws_density(&self) -> bool {
         true
     }
@@ -25,7 +26,8 @@ pub(crate) trait Peer {
 /// All of them, penumbral first.
 pub(crate) fn all() -> Vec<Box<dyn Peer>> {
     vec![
-        Box::new(ours::Penumbral),
+        Box::new(ours::Penumbral::Whole),
+        Box::new(ours::Penumbral::Opaque),
         Box::new(vello_rrect::BlurredRect),
         Box::new(resvg_filter::GaussianFilter),
         Box::new(libblur_masks::StackBlur),

@@ -31,13 +31,15 @@ impl Scene {
             [truth.width, truth.height] == [width, height],
             "its exact map is of another size"
         );
+        // The peers draw black as dense as the shadow is.
+        let full = penumbral::Tone::new(1.0, 0.0)?;
         let name = json.file_stem().context("a file without a name")?;
         Ok(Self {
             name: name.to_string_lossy().into_owned(),
             width,
             height,
             casters: fields.casters()?,
-            ours: penumbral::Scene::from_json(&text)?,
+            ours: penumbral::Scene::from_json(&text)?.with_tone(full),
             truth,
         })
     }

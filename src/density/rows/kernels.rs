@@ -184,8 +184,12 @@ pub(super) fn segment_of(squared_chord: f32, radius: f32) -> f32 {
 
 #[inline(always)]
 pub(super) fn arc<S: Simd>(simd: S, columns: f32x8<S>, arc: &RowArc) -> f32x8<S> {
-    // How far beyond its ends a point may seem to lie that rounding has moved there.
+    // How far beyond its ends a point may seem to lie that rounding has moved there, and the more of it the nearer the two
+    // centres are: times their squared distance.
     const SLACK: f32 = 1e-5;
+    const SLACK_NEAR: f32 = 1e-9;
+    // An arc so near to the disc's own circle lies on it: where they cross is a matter of rounding.
+    const SAME: f32 = 1e-4;
     let zero = f32x8::splat(simd, 0.0);
     let one = f32x8::splat(simd, 1.0);
 
@@ -199,7 +203,10 @@ pub(super) fn arc<S: Simd>(simd: S, columns: f32x8<S>, arc: &RowArc) -> f32x8<S>
     // The two circles cross on both sides of the point at `toward` of the way to the arc's centre.
     let [power, slope, curvature] = arc.power;
     let power = columns * (columns * curvature + slope) + power;
-    let inverse = one / (power + arc.radius * arc.radius).max(f32x8::splat(simd, 1e-12));
+    // Of the centre's own coordinates, so that both points lie on the disc's circle however near to each other the centres
+    // are.
+    let distance = center_x * center_x + arc.center_y * arc.center_y;
+    let inverse = one / distance.max(f32x8::splat(simd, 1e-12));
     let toward = (power + 1.0) * 0.5 * inverse;
     let squared = inverse - toward * toward;
     let aside = squared.max(zero).sqrt() * arc.turn;
@@ -211,14 +218,17 @@ pub(super) fn arc<S: Simd>(simd: S, columns: f32x8<S>, arc: &RowArc) -> f32x8<S>
     // Order along the arc is order along y.
     let rise = if to_y < from_y { -1.0 } else { 1.0 };
     let (enters, leaves) = (enter_y * rise, leave_y * rise);
-    let beside = center_x * arc.side - SLACK;
+    let slack = inverse * SLACK_NEAR + SLACK;
+    let beside = center_x * arc.side - slack;
     let crossed = (enter_x * arc.side).simd_ge(beside)
         & (leave_x * arc.side).simd_ge(beside)
-        & enters.min(leaves).simd_ge(from_y * rise - SLACK)
-        & enters.max(leaves).simd_le(to_y * rise + SLACK)
+        & enters.min(leaves).simd_ge(-slack + from_y * rise)
+        & enters.max(leaves).simd_le(slack + to_y * rise)
         & squared.simd_gt(zero);
     let notched = from_in & to_in & crossed & leaves.simd_lt(enters);
-    let met = from_in | to_in | (crossed & enters.simd_le(leaves));
+    let same = (SAME - (arc.radius - 1.0).abs()).max(0.0);
+    let met = (from_in | to_in | (crossed & enters.simd_le(leaves)))
+        & distance.simd_ge(f32x8::splat(simd, same * same));
 
     // From p to q it runs inside; or, where notched, all but from p to q.
     let splat = |v: f32| f32x8::splat(simd, v);
@@ -232,8 +242,20 @@ pub(super) fn arc<S: Simd>(simd: S, columns: f32x8<S>, arc: &RowArc) -> f32x8<S>
 
     let enter_half = half_disc_at(simd, enter_x, enter_y);
     let leave_half = half_disc_at(simd, leave_x, leave_y);
-    let before = (enter_half - arc.halves[0]) * one.copysign(enter_x);
-    let after = (leave_half - arc.halves[1]) * one.copysign(leave_x);
+    // What lies outside is on one side of the disc as a whole. A crossing may be at the disc's top, where rounding decides
+    // on which side it is.
+    let enter_side = if from_width > 0.0 {
+        enter_x + from_x
+    } else {
+        enter_x
+    };
+    let leave_side = if to_width > 0.0 {
+        leave_x + to_x
+    } else {
+        leave_x
+    };
+    let before = (enter_half - arc.halves[0]) * one.copysign(enter_side);
+    let after = (leave_half - arc.halves[1]) * one.copysign(leave_side);
     let added = inside + from_in.select(zero, before) - to_in.select(zero, after);
     let whole = (from_x + to_x) * ((to_y - from_y) * 0.5 * FRAC_1_PI) + arc.segment * arc.turn;
     let but_notch = whole - inside + (enter_half - leave_half) * one.copysign(base_x);
