@@ -7,10 +7,11 @@ use glam::DVec2;
 use crate::density::{self, PixelOptions, Sink};
 use crate::grid::Grid;
 use crate::light::Projection;
-use crate::outline::{Edge, Outline};
+use crate::outline::{self, Edge, Fineness, is_convex};
+use crate::path::Segment;
 use crate::scratch::Scratch;
-use crate::shadow::Shadow;
-use crate::shape::Shape;
+use crate::shadow::{Shadow, turn_left};
+use crate::shape::{Cover, Shape};
 
 /// Pixels of one grid that need no shadow: those wholly covered by opaque surfaces above the receiver, or clipped away.
 ///
@@ -77,10 +78,13 @@ impl Hidden {
     /// Hides the pixels that one of many shapes covers wholly.
     pub fn add_all<'a>(&mut self, shapes: impl Iterator<Item = &'a Shape>, scratch: &mut Scratch) {
         for shape in shapes {
-            match Outline::of_simple(shape).filter(Outline::is_convex) {
-                Some(outline) => self.push_convex(&outline),
-                None => self.push_covered(shape, scratch),
+            let mut edges = scratch.take();
+            if convex_edges(shape, &mut edges) {
+                self.push_convex(&edges);
+            } else {
+                self.push_covered(shape, scratch);
             }
+            scratch.give(edges);
         }
         self.seal();
     }
@@ -188,19 +192,19 @@ impl Hidden {
     }
 
     /// Of a convex outline a pixel is inside when its four corners are.
-    fn push_convex(&mut self, outline: &Outline) {
+    fn push_convex(&mut self, edges: &[Edge]) {
         let scale = self.grid.pixels_per_unit();
         let corner = self.grid.corner();
         let place = |p: DVec2| p * scale - corner;
-        let Some((min, max)) = outline.bounds() else {
+        let Some((min, max)) = outline::bounds(edges.iter()) else {
             return;
         };
         let (top, bottom) = (place(min).y.ceil(), place(max).y.floor());
         let rows = top.max(0.0) as u32..bottom.clamp(0.0, f64::from(self.grid.height())) as u32;
         let columns = f64::from(self.grid.width());
         let across = |y: f64| {
-            let edges = outline.edges().map(|edge| edge.mapped(scale, place));
-            edges.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), edge| {
+            let placed = edges.iter().map(|edge| edge.mapped(scale, place));
+            placed.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), edge| {
                 let (a, b) = crossings(&edge, y);
                 (least.min(a), most.max(b))
             })
@@ -221,6 +225,24 @@ impl Hidden {
         let options = PixelOptions::default();
         density::draw(&cover, &grid, &options, scratch, &mut Covered(self));
     }
+}
+
+/// Puts a shape's edges into `edges` and tells whether they are lines and circular arcs of one convex loop.
+fn convex_edges(shape: &Shape, edges: &mut Vec<Edge>) -> bool {
+    let [contour] = shape.contours.as_slice() else {
+        return false;
+    };
+    let is_line = |segment: &&Segment| matches!(segment, Segment::Line(_));
+    let lines = contour.segments.iter().filter(is_line).count();
+    let curves = |segment: &Segment| matches!(segment, Segment::Quad(..) | Segment::Cubic(..));
+    if shape.cover != Cover::Simple || contour.segments.iter().any(curves) {
+        return false;
+    }
+    contour.chords(&Fineness::new(1.0, 0.0, 1.0), edges);
+    turn_left(edges);
+    // Arcs that are not circular have become lines, which may lie outside of them.
+    let drawn = edges.iter().filter(|edge| matches!(edge, Edge::Line(_)));
+    drawn.count() <= lines + 1 && is_convex(edges)
 }
 
 /// Takes what is covered wholly.

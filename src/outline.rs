@@ -196,7 +196,7 @@ impl Outline {
                 // A single convex contour is what it covers, whatever the rule.
                 let polygons = flatten(shape, 1.0);
                 return Some(match polygons.as_slice() {
-                    [only] if is_convex(only) => Self::of_polygons(&polygons),
+                    [only] if is_convex_polygon(only) => Self::of_polygons(&polygons),
                     _ => resolve(&polygons, Winding::Rule(rule)),
                 });
             }
@@ -272,38 +272,6 @@ impl Outline {
                 .unwrap_or(core::cmp::Ordering::Equal)
         });
         self
-    }
-
-    /// Whether it is one loop that turns one way only, and once.
-    pub(crate) fn is_convex(&self) -> bool {
-        let [edges] = self.loops.as_slice() else {
-            return false;
-        };
-        let directions = |edge: &Edge| match edge {
-            Edge::Line(line) | Edge::Border(line) => {
-                let along = line.to - line.from;
-                [along, along]
-            }
-            Edge::Arc(arc) => [arc.from, arc.to].map(|end| (end - arc.center).perp()),
-        };
-        let mut turned = 0.0;
-        for (edge, next) in edges.iter().zip(edges.iter().cycle().skip(1)) {
-            if let Edge::Arc(arc) = edge {
-                if arc.sweep < 0.0 {
-                    return false;
-                }
-                turned += arc.sweep;
-            }
-            let (before, after) = (directions(edge)[1], directions(next)[0]);
-            let turn = atan2(before.perp_dot(after), before.dot(after));
-            // An arc's ends are rounded, and so are the directions there.
-            const ROUNDING: f64 = 1e-9;
-            if turn < -ROUNDING {
-                return false;
-            }
-            turned += turn;
-        }
-        turned < 1.5 * TAU
     }
 
     /// The outline moved by `offset`.
@@ -405,7 +373,7 @@ fn closed_lines(polygon: &[DVec2]) -> Vec<Edge> {
 }
 
 /// Whether a polygon turns one way only, and once.
-fn is_convex(polygon: &[DVec2]) -> bool {
+fn is_convex_polygon(polygon: &[DVec2]) -> bool {
     let count = polygon.len();
     let edge = |i: usize| polygon[(i + 1) % count] - polygon[i % count];
     let turns_left = (0..count).all(|i| edge(i).perp_dot(edge(i + 1)) > 0.0);
@@ -415,6 +383,35 @@ fn is_convex(polygon: &[DVec2]) -> bool {
         .filter(|&i| (edge(i).x < 0.0) != (edge(i + 1).x < 0.0))
         .count();
     (turns_left || turns_right) && changes <= 2
+}
+
+/// Whether the edges of one loop turn to the left only, and once round.
+pub(crate) fn is_convex(edges: &[Edge]) -> bool {
+    let directions = |edge: &Edge| match edge {
+        Edge::Line(line) | Edge::Border(line) => {
+            let along = line.to - line.from;
+            [along, along]
+        }
+        Edge::Arc(arc) => [arc.from, arc.to].map(|end| (end - arc.center).perp()),
+    };
+    let mut turned = 0.0;
+    for (edge, next) in edges.iter().zip(edges.iter().cycle().skip(1)) {
+        if let Edge::Arc(arc) = edge {
+            if arc.sweep < 0.0 {
+                return false;
+            }
+            turned += arc.sweep;
+        }
+        let (before, after) = (directions(edge)[1], directions(next)[0]);
+        let turn = atan2(before.perp_dot(after), before.dot(after));
+        // An arc's ends are rounded, and so are the directions there.
+        const ROUNDING: f64 = 1e-9;
+        if turn < -ROUNDING {
+            return false;
+        }
+        turned += turn;
+    }
+    turned < 1.5 * TAU
 }
 
 /// The smallest box that holds edges.

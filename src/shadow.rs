@@ -434,7 +434,7 @@ impl Shape {
 }
 
 /// Turns the edges of loops round if what they enclose lies on their right.
-fn turn_left(edges: &mut [Edge]) {
+pub(crate) fn turn_left(edges: &mut [Edge]) {
     // Far from the origin the areas would cancel.
     let origin = edges.first().map_or(DVec2::ZERO, Edge::from);
     if edges

@@ -1,0 +1,101 @@
+//! A warm drawing takes no memory.
+
+#![expect(clippy::unwrap_used, reason = "a case that is refused fails the test")]
+
+use penumbral::plan::Method;
+use penumbral::{Color, FillRule, Grid, Hidden, Light, Paint, Path, PixelOptions, Scratch, Shape};
+
+fn shapes() -> Vec<(&'static str, Vec<Shape>)> {
+    let mut heart = Path::new();
+    heart
+        .move_to([80.0, 140.0])
+        .cubic_to([10.0, 100.0], [0.0, 50.0], [15.0, 30.0])
+        .cubic_to([40.0, 5.0], [70.0, 15.0], [80.0, 40.0])
+        .cubic_to([90.0, 15.0], [120.0, 5.0], [145.0, 30.0])
+        .cubic_to([160.0, 50.0], [150.0, 100.0], [80.0, 140.0]);
+    let star: Vec<[f32; 2]> = (0_u8..10)
+        .map(|i| {
+            let (sin, cos) = (f32::from(i) * core::f32::consts::PI / 5.0).sin_cos();
+            let radius = if i % 2 == 0 { 70.0 } else { 28.0 };
+            [80.0 + radius * sin, 80.0 - radius * cos]
+        })
+        .collect();
+    let card = |x: f32, y: f32| Shape::rounded_rect(x, y, 36.0, 20.0, 4.0).unwrap();
+    let cards = (0_u8..20).map(|i| card(f32::from(i % 4) * 40.0, f32::from(i / 4) * 24.0 + 10.0));
+    vec![
+        (
+            "card",
+            vec![Shape::rounded_rect(20.3, 30.0, 110.0, 80.0, 9.0).unwrap()],
+        ),
+        (
+            "pill",
+            vec![Shape::rounded_rect(20.3, 50.0, 110.0, 40.0, 20.0).unwrap()],
+        ),
+        ("circle", vec![Shape::circle([80.0, 80.0], 40.0).unwrap()]),
+        (
+            "star",
+            vec![Shape::polygon(&[star], FillRule::NonZero).unwrap()],
+        ),
+        (
+            "heart",
+            vec![Shape::path(&heart, FillRule::NonZero).unwrap()],
+        ),
+        ("cards", cards.collect()),
+    ]
+}
+
+#[test]
+fn a_warm_drawing_takes_no_memory() {
+    let grid = Grid::new([0.0, 0.0], [160, 160], 1.0).unwrap();
+    let paint = Paint::new(Color::BLACK, 0.2).unwrap();
+    let mut scratch = Scratch::new();
+    let (mut mask, mut canvas) = (vec![0; 160 * 160], vec![255; 4 * 160 * 160]);
+    let mut hidden = Hidden::new(&grid);
+    let methods = [
+        None,
+        Some(Method::Direct),
+        Some(Method::Grid),
+        Some(Method::NinePatch),
+    ];
+    for (name, shapes) in shapes() {
+        for radius in [0.0_f32, 0.3, 1.5, 4.0, 12.0, 40.0] {
+            let light = Light::directional([0.0, 3.0], radius).unwrap();
+            let shadow = light.cast_all(&shapes, 1.0, 0.0).unwrap();
+            for method in methods {
+                let mut draw = || {
+                    let options = PixelOptions {
+                        method,
+                        ..PixelOptions::default()
+                    };
+                    shadow
+                        .fill_a8_with(&grid, &mut mask, &options, &mut scratch)
+                        .unwrap();
+                    shadow
+                        .blend_rgba8(&grid, &mut canvas, &paint, &options, &mut scratch)
+                        .unwrap();
+                };
+                draw();
+                let warm = allocation_counter::measure(draw);
+                assert_eq!(warm.count_total, 0, "{name} at r {radius} by {method:?}");
+            }
+            let mut draw = || {
+                hidden.reset(&grid);
+                // Of other shapes coverage is drawn, and that is projected first.
+                let convex = shapes
+                    .iter()
+                    .take(usize::from(name != "star" && name != "heart"));
+                hidden.add_all(convex, &mut scratch);
+                let options = PixelOptions {
+                    hidden: Some(&hidden),
+                    ..PixelOptions::default()
+                };
+                shadow
+                    .blend_rgba8(&grid, &mut canvas, &paint, &options, &mut scratch)
+                    .unwrap();
+            };
+            draw();
+            let warm = allocation_counter::measure(draw);
+            assert_eq!(warm.count_total, 0, "{name} at r {radius}, hidden");
+        }
+    }
+}
