@@ -220,12 +220,27 @@ impl Hidden {
     }
 
     fn push_covered(&mut self, shape: &Shape, scratch: &mut Scratch) {
-        let cover = Shadow::project(&[shape], &Projection::in_place(0.0));
         let grid = self.grid;
         let options = PixelOptions::default();
-        density::draw(&cover, &grid, &options, scratch, &mut Covered(self));
+        if shape.cover != Cover::Simple {
+            let cover = Shadow::project(&[shape], &Projection::in_place(0.0));
+            density::draw(&cover, &grid, &options, scratch, &mut Covered(self));
+            return;
+        }
+        // What crosses nothing needs no outline of its own.
+        let mut edges = scratch.take();
+        let fineness = Fineness::new(CURVES, 0.0, 1.0 / grid.pixels_per_unit());
+        for contour in &shape.contours {
+            contour.chords(&fineness, &mut edges);
+        }
+        turn_left(&mut edges);
+        density::cover(&edges, &grid, scratch, &mut Covered(self));
+        scratch.give(edges);
     }
 }
+
+/// How far lines in place of curves may move a pixel's coverage, in levels.
+const CURVES: f64 = 0.25;
 
 /// Puts a shape's edges into `edges` and tells whether they are lines and circular arcs of one convex loop.
 fn convex_edges(shape: &Shape, edges: &mut Vec<Edge>) -> bool {

@@ -31,16 +31,13 @@ pub struct Shadow {
     curved: Vec<Vec<Shape>>,
     /// The outline as exact as `density_at` promises, made when it is first needed.
     exact: OnceLock<Outline>,
+    /// The outline for pixels as it was first asked for, and how far its lines are from their curves.
+    drawn: OnceLock<(f64, Outline)>,
     /// The outline as a rounded rectangle, if it is one.
     rounded: Option<Rounded>,
-    /// Shadows of one radius that are this one together and hardly meet; none if it is a single one.
+    /// Shadows of one radius that are this one together and do not meet; none if it is a single one.
     parts: Vec<Shadow>,
 }
-
-/// How far outlines reach when they are sorted into parts, over the penumbra radius. Where two such parts meet each is at
-/// the end of its penumbra: their densities there have a product of at most 0.1 level, by which it matters whether they
-/// are added or laid one over the other.
-const REACH: f64 = 0.85;
 
 /// A box from its least to its largest x and y, in scene units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -118,11 +115,11 @@ impl Shadow {
             return;
         }
         self.rounded = Rounded::of(&self.fixed);
-        // A narrow penumbra is averaged over pixels: then parts must be pixels apart.
+        // No pixel is to see two parts: their densities would be rounded twice. A narrow penumbra is averaged over pixels.
         let reach = if self.radius < 3.0 {
             self.radius + 1.0
         } else {
-            self.radius * REACH
+            self.radius
         };
         let boxed = self.fixed.loops.iter().filter_map(|edges| {
             let outline = Outline {
@@ -281,14 +278,19 @@ impl Shadow {
         }
     }
 
-    /// The outline for pixels of side `pixel`, as a whole: the exact one, which is kept, unless its lines would be much
-    /// finer than a pixel needs.
+    /// The outline for pixels of side `pixel`, as a whole: the exact one unless its lines would be much finer than a pixel
+    /// needs. Both are kept, the second for one size of pixels.
     fn drawn_outline(&self, levels: f64, pixel: f64) -> Cow<'_, Outline> {
         let needed = density::flatness(levels, self.radius, pixel);
-        if needed > density::flatness(levels, self.radius, 0.0) {
-            self.outline(needed)
+        if needed <= density::flatness(levels, self.radius, 0.0) {
+            return Cow::Borrowed(self.exact_outline());
+        }
+        let make = || self.outline(needed).into_owned();
+        let (kept, outline) = self.drawn.get_or_init(|| (needed, make()));
+        if *kept == needed {
+            Cow::Borrowed(outline)
         } else {
-            Cow::Borrowed(self.exact_outline())
+            Cow::Owned(make())
         }
     }
 

@@ -30,6 +30,9 @@ pub(crate) fn steps(levels: f64) -> f64 {
     STEPS * libm::pow(1.0 / levels, if levels < 1.0 { 1.0 / 1.5 } else { 0.5 })
 }
 
+/// A row of the lattice has at least so many columns: eight at once are foretold, from three more on both sides.
+const LEAST: i64 = LANES as i64 + 6;
+
 /// Columns of the lattice before the shadow begins.
 const MARGIN: f64 = 4.0;
 
@@ -116,11 +119,12 @@ pub(crate) fn fill<S: Simd>(
         density: radius,
     };
     kept.rows.load_from(pixel_rows);
+    let knots = across.place(columns.start) as i64 - 4..across.place(columns.end) as i64 + 6;
     let mut weaver = Weaver {
         kept,
         across,
         columns: columns.clone(),
-        knots: across.place(columns.start) as i64 - 4..across.place(columns.end) as i64 + 6,
+        knots: knots.start..knots.end.max(knots.start + LEAST),
         next: down.place(lines.start) as i64 - 3,
         steps,
         limit: (LIMIT * levels / 255.0) as f32,

@@ -185,7 +185,7 @@ pub(super) fn segment_of(squared_chord: f32, radius: f32) -> f32 {
 #[inline(always)]
 pub(super) fn arc<S: Simd>(simd: S, columns: f32x8<S>, arc: &RowArc) -> f32x8<S> {
     // How far beyond its ends a point may seem to lie that rounding has moved there, and the more of it the nearer the two
-    // centres are: times their squared distance.
+    // centres are: over their squared distance.
     const SLACK: f32 = 1e-5;
     const SLACK_NEAR: f32 = 1e-9;
     // An arc so near to the disc's own circle lies on it: where they cross is a matter of rounding.
