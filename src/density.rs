@@ -22,7 +22,6 @@ use fearless_simd::dispatch;
 use self::frame::Frame;
 use crate::grid::Grid;
 use crate::hidden::Hidden;
-use crate::outline::Edge;
 use crate::plan::{self, Method};
 use crate::scratch::Scratch;
 use crate::shadow::Shadow;
@@ -95,14 +94,6 @@ pub(crate) fn draw(
     for part in shadow.parts(grid.pixels_per_unit()) {
         draw_part(part, grid, options, scratch, sink);
     }
-}
-
-/// Gives `sink` the part of every pixel that lies inside an outline's edges.
-pub(crate) fn cover(edges: &[Edge], grid: &Grid, scratch: &mut Scratch, sink: &mut dyn Sink) {
-    let options = PixelOptions::default();
-    dispatch!(scratch.level(), simd => {
-        direct::fill_edges(simd, (edges, 0.0), grid, &options, scratch, false, sink);
-    });
 }
 
 fn draw_part(

@@ -1,16 +1,16 @@
 //! Hidden: the pixels that something opaque covers, on which no shadow is seen.
 
+pub(crate) mod inside;
+
 use core::ops::Range;
 
-use glam::DVec2;
-
-use crate::density::{self, PixelOptions, Sink};
+use self::inside::sort_by_row;
 use crate::grid::Grid;
 use crate::light::Projection;
-use crate::outline::{self, Edge, Fineness, is_convex};
-use crate::path::Segment;
+use crate::outline::Fineness;
+use crate::path::Contour;
 use crate::scratch::Scratch;
-use crate::shadow::{Shadow, turn_left};
+use crate::shadow::Shadow;
 use crate::shape::{Cover, Shape};
 
 /// Pixels of one grid that need no shadow: those wholly covered by opaque surfaces above the receiver, or clipped away.
@@ -41,9 +41,11 @@ pub struct Hidden {
     spans: Vec<Span>,
     /// Where each row's spans begin, and where the last one's end.
     rows: Vec<u32>,
+    /// Memory for sorting.
+    sorted: Vec<Span>,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
 struct Span {
     row: u32,
     start: u32,
@@ -58,6 +60,7 @@ impl Hidden {
             grid: *grid,
             spans: Vec::new(),
             rows: Vec::new(),
+            sorted: Vec::new(),
         };
         hidden.seal();
         hidden
@@ -78,13 +81,7 @@ impl Hidden {
     /// Hides the pixels that one of many shapes covers wholly.
     pub fn add_all<'a>(&mut self, shapes: impl Iterator<Item = &'a Shape>, scratch: &mut Scratch) {
         for shape in shapes {
-            let mut edges = scratch.take();
-            if convex_edges(shape, &mut edges) {
-                self.push_convex(&edges);
-            } else {
-                self.push_covered(shape, scratch);
-            }
-            scratch.give(edges);
+            self.push_covered(shape, scratch);
         }
         self.seal();
     }
@@ -166,152 +163,66 @@ impl Hidden {
 
     /// Sorts and joins the spans, and finds the rows among them.
     fn seal(&mut self) {
-        self.spans.sort_unstable();
-        let mut kept = 0;
-        for index in 0..self.spans.len() {
-            let span = self.spans[index];
-            match self.spans[..kept].last_mut() {
-                Some(last) if last.row == span.row && span.start <= last.end => {
-                    last.end = last.end.max(span.end);
-                }
-                _ => {
-                    self.spans[kept] = span;
-                    kept += 1;
+        let height = self.grid.height();
+        sort_by_row(
+            &self.spans,
+            |span| span.row,
+            height,
+            &mut self.sorted,
+            &mut self.rows,
+        );
+        self.spans.clear();
+        for row in 0..height as usize {
+            let range = self.rows[row] as usize..self.rows[row + 1] as usize;
+            let first = self.spans.len();
+            self.rows[row] = first as u32;
+            let of_row = &mut self.sorted[range];
+            of_row.sort_unstable();
+            for span in &*of_row {
+                match self.spans[first..].last_mut() {
+                    Some(last) if span.start <= last.end => last.end = last.end.max(span.end),
+                    _ => self.spans.push(*span),
                 }
             }
         }
-        self.spans.truncate(kept);
-        self.rows.clear();
-        let mut at = 0;
-        for row in 0..=self.grid.height() {
-            while self.spans.get(at).is_some_and(|span| span.row < row) {
-                at += 1;
-            }
-            self.rows.push(at as u32);
-        }
-    }
-
-    /// Of a convex outline a pixel is inside when its four corners are.
-    fn push_convex(&mut self, edges: &[Edge]) {
-        let scale = self.grid.pixels_per_unit();
-        let corner = self.grid.corner();
-        let place = |p: DVec2| p * scale - corner;
-        let Some((min, max)) = outline::bounds(edges.iter()) else {
-            return;
-        };
-        let (top, bottom) = (place(min).y.ceil(), place(max).y.floor());
-        let rows = top.max(0.0) as u32..bottom.clamp(0.0, f64::from(self.grid.height())) as u32;
-        let columns = f64::from(self.grid.width());
-        let across = |y: f64| {
-            let placed = edges.iter().map(|edge| edge.mapped(scale, place));
-            placed.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), edge| {
-                let (a, b) = crossings(&edge, y);
-                (least.min(a), most.max(b))
-            })
-        };
-        let mut above = across(f64::from(rows.start));
-        for row in rows {
-            let below = across(f64::from(row + 1));
-            let start = above.0.max(below.0).ceil().clamp(0.0, columns);
-            let end = above.1.min(below.1).floor().clamp(0.0, columns);
-            self.push(row, start as u32, end as u32);
-            above = below;
-        }
+        self.rows[height as usize] = self.spans.len() as u32;
     }
 
     fn push_covered(&mut self, shape: &Shape, scratch: &mut Scratch) {
-        let grid = self.grid;
-        let options = PixelOptions::default();
-        if shape.cover != Cover::Simple {
-            let cover = Shadow::project(&[shape], &Projection::in_place(0.0));
-            density::draw(&cover, &grid, &options, scratch, &mut Covered(self));
-            return;
-        }
-        // What crosses nothing needs no outline of its own.
+        let (scale, corner) = (self.grid.pixels_per_unit(), self.grid.corner());
         let mut edges = scratch.take();
-        let fineness = Fineness::new(CURVES, 0.0, 1.0 / grid.pixels_per_unit());
-        for contour in &shape.contours {
-            contour.chords(&fineness, &mut edges);
+        if shape.cover == Cover::Simple {
+            let fineness = Fineness::new(CURVES, 0.0, 1.0 / scale);
+            for contour in &shape.contours {
+                contour.chords(&fineness, &mut edges);
+            }
+        } else {
+            let cover = Shadow::project(&[shape], &Projection::in_place(0.0));
+            cover.edges_into(CURVES, 1.0 / scale, &mut edges);
         }
-        turn_left(&mut edges);
-        density::cover(&edges, &grid, scratch, &mut Covered(self));
+        let exact = match shape.cover {
+            Cover::Simple => shape.contours.iter().all(Contour::is_of_circles),
+            Cover::Rule(_) => shape.contours.iter().all(Contour::is_straight),
+        };
+        let margin = if exact { 0.0 } else { inside::FLATNESS };
+        let placed = edges
+            .iter()
+            .map(|edge| edge.mapped(scale, |p| p * scale - corner));
+        let size = [self.grid.width(), self.grid.height()];
+        let spans = &mut self.spans;
+        scratch
+            .inside
+            .find(placed, margin, size, |row, start, end| {
+                if start < end {
+                    spans.push(Span { row, start, end });
+                }
+            });
         scratch.give(edges);
     }
 }
 
 /// How far lines in place of curves may move a pixel's coverage, in levels.
 const CURVES: f64 = 0.25;
-
-/// Puts a shape's edges into `edges` and tells whether they are lines and circular arcs of one convex loop.
-fn convex_edges(shape: &Shape, edges: &mut Vec<Edge>) -> bool {
-    let [contour] = shape.contours.as_slice() else {
-        return false;
-    };
-    let is_line = |segment: &&Segment| matches!(segment, Segment::Line(_));
-    let lines = contour.segments.iter().filter(is_line).count();
-    let curves = |segment: &Segment| matches!(segment, Segment::Quad(..) | Segment::Cubic(..));
-    if shape.cover != Cover::Simple || contour.segments.iter().any(curves) {
-        return false;
-    }
-    contour.chords(&Fineness::new(1.0, 0.0, 1.0), edges);
-    turn_left(edges);
-    // Arcs that are not circular have become lines, which may lie outside of them.
-    let drawn = edges.iter().filter(|edge| matches!(edge, Edge::Line(_)));
-    drawn.count() <= lines + 1 && is_convex(edges)
-}
-
-/// Takes what is covered wholly.
-struct Covered<'a>(&'a mut Hidden);
-
-impl Sink for Covered<'_> {
-    fn constant(&mut self, y: u32, columns: Range<u32>, density: f32) {
-        if density == 1.0 {
-            self.0.push(y, columns.start, columns.end);
-        }
-    }
-
-    fn values(&mut self, y: u32, first: u32, densities: &[f32]) {
-        for (column, density) in (first..).zip(densities) {
-            if *density == 1.0 {
-                self.0.push(y, column, column + 1);
-            }
-        }
-    }
-}
-
-/// The least and the largest x at which an edge of a convex outline crosses `y`; where it does not, they are the wrong way
-/// round.
-fn crossings(edge: &Edge, y: f64) -> (f64, f64) {
-    let (from, to) = (edge.from(), edge.to());
-    let none = (f64::INFINITY, f64::NEG_INFINITY);
-    match edge {
-        Edge::Line(_) | Edge::Border(_) => {
-            if y < from.y.min(to.y) || y > from.y.max(to.y) {
-                return none;
-            }
-            if from.y == to.y {
-                return (from.x.min(to.x), from.x.max(to.x));
-            }
-            let x = from.x + (to.x - from.x) * ((y - from.y) / (to.y - from.y));
-            (x, x)
-        }
-        Edge::Arc(arc) => {
-            let rise = y - arc.center.y;
-            let squared = arc.radius * arc.radius - rise * rise;
-            if squared < 0.0 {
-                return none;
-            }
-            let half = squared.sqrt();
-            [-half, half]
-                .into_iter()
-                .filter(|side| arc.has(DVec2::new(*side, rise)))
-                .fold(none, |(least, most), side| {
-                    let x = arc.center.x + side;
-                    (least.min(x), most.max(x))
-                })
-        }
-    }
-}
 
 #[cfg(test)]
 mod tests {

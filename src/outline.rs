@@ -385,35 +385,6 @@ fn is_convex_polygon(polygon: &[DVec2]) -> bool {
     (turns_left || turns_right) && changes <= 2
 }
 
-/// Whether the edges of one loop turn to the left only, and once round.
-pub(crate) fn is_convex(edges: &[Edge]) -> bool {
-    let directions = |edge: &Edge| match edge {
-        Edge::Line(line) | Edge::Border(line) => {
-            let along = line.to - line.from;
-            [along, along]
-        }
-        Edge::Arc(arc) => [arc.from, arc.to].map(|end| (end - arc.center).perp()),
-    };
-    let mut turned = 0.0;
-    for (edge, next) in edges.iter().zip(edges.iter().cycle().skip(1)) {
-        if let Edge::Arc(arc) = edge {
-            if arc.sweep < 0.0 {
-                return false;
-            }
-            turned += arc.sweep;
-        }
-        let (before, after) = (directions(edge)[1], directions(next)[0]);
-        let turn = atan2(before.perp_dot(after), before.dot(after));
-        // An arc's ends are rounded, and so are the directions there.
-        const ROUNDING: f64 = 1e-9;
-        if turn < -ROUNDING {
-            return false;
-        }
-        turned += turn;
-    }
-    turned < 1.5 * TAU
-}
-
 /// The smallest box that holds edges.
 pub(crate) fn bounds<'a>(edges: impl Iterator<Item = &'a Edge>) -> Option<(DVec2, DVec2)> {
     let mut bounds: Option<(DVec2, DVec2)> = None;
@@ -437,17 +408,11 @@ pub(crate) fn bounds<'a>(edges: impl Iterator<Item = &'a Edge>) -> Option<(DVec2
 fn circular(from: DVec2, arc: &EllipseArc) -> Option<impl Iterator<Item = Arc>> {
     // Rounding may make a half circle a little longer, and two arcs of it would be no better.
     const HALF_TURN: f64 = PI + 1e-9;
-    let radius = arc.u.length();
-    // Rounding of an affine map leaves some 1e-16; a millionth of that in levels.
-    let slack = 1e-12 * radius;
-    let turn = if arc.u.perp_dot(arc.v) < 0.0 {
-        -1.0
-    } else {
-        1.0
-    };
-    if (arc.v - turn * arc.u.perp()).length() > slack {
+    if !arc.is_circular() {
         return None;
     }
+    let radius = arc.u.length();
+    let turn = arc.turn();
     let whole = Arc {
         center: arc.center,
         radius,

@@ -234,6 +234,15 @@ impl Contour {
             .all(|segment| matches!(segment, Segment::Line(_)))
     }
 
+    /// Whether it is made of lines and circular arcs alone.
+    pub(crate) fn is_of_circles(&self) -> bool {
+        self.segments.iter().all(|segment| match segment {
+            Segment::Line(_) => true,
+            Segment::Arc(arc) => arc.is_circular(),
+            Segment::Quad(..) | Segment::Cubic(..) => false,
+        })
+    }
+
     pub(crate) fn transformed(&self, affine: &DAffine2) -> Self {
         let map = |p| affine.transform_point2(p);
         let segments = self
@@ -339,6 +348,22 @@ fn lyon_point(p: DVec2) -> Point<f64> {
 }
 
 impl EllipseArc {
+    /// Whether its half diameters are equal and perpendicular: it is a circle's.
+    pub(crate) fn is_circular(&self) -> bool {
+        // Rounding of an affine map leaves some 1e-16; a millionth of that in levels.
+        let slack = 1e-12 * self.u.length();
+        (self.v - self.turn() * self.u.perp()).length() <= slack
+    }
+
+    /// 1 where its angles grow from the x axis to the y axis, else -1.
+    pub(crate) fn turn(&self) -> f64 {
+        if self.u.perp_dot(self.v) < 0.0 {
+            -1.0
+        } else {
+            1.0
+        }
+    }
+
     /// The arc of SVG's endpoint form (SVG 1.1, appendix F.6.5 and F.6.6), or none where SVG has a line.
     fn through(
         from: DVec2,

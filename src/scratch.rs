@@ -8,6 +8,7 @@ use crate::density::circle::Profile;
 use crate::density::grid::GridScratch;
 use crate::density::nine_patch::NinePatchScratch;
 use crate::density::rows::Rows;
+use crate::hidden::inside::Inside;
 use crate::outline::Edge;
 
 /// Buffers that pixel methods need while they work, kept so that drawing again allocates little or nothing. It holds no
@@ -22,6 +23,7 @@ pub struct Scratch {
     pub(crate) nine_patch: NinePatchScratch,
     pub(crate) grid: GridScratch,
     pub(crate) circle: Profile,
+    pub(crate) inside: Inside,
     /// The columns of a row that are to be drawn.
     pub(crate) wanted: Vec<Range<i64>>,
 }
@@ -47,6 +49,7 @@ impl Scratch {
             nine_patch: NinePatchScratch::default(),
             grid: GridScratch::default(),
             circle: Profile::default(),
+            inside: Inside::default(),
             wanted: Vec::new(),
         }
     }
