@@ -98,40 +98,52 @@ pub(crate) fn draw(
 
 fn draw_part(
     shadow: &Shadow,
-    grid: &Grid,
+    on: &Grid,
     options: &PixelOptions<'_>,
     scratch: &mut Scratch,
     sink: &mut dyn Sink,
 ) {
-    let per_unit = grid.pixels_per_unit();
+    let per_unit = on.pixels_per_unit();
     let pixels = plan::Target::Pixels { per_unit };
     let method = options
         .method
         .unwrap_or_else(|| plan::choose(shadow, options.tolerance, pixels).method);
     let level = scratch.level();
     match method {
-        Method::Exact => exact::fill(shadow, grid, options.hidden, scratch, sink),
+        Method::Exact => exact::fill(shadow, on, options.hidden, scratch, sink),
         Method::Mesh => {
             let mesh = shadow.mesh(options.tolerance);
-            mesh.scan_convert(grid, options.hidden, sink);
+            mesh.scan_convert(on, options.hidden, sink);
         }
         Method::NinePatch if let Some(rounded) = nine_patch::suited(shadow, per_unit) => {
             let radius = shadow.radius() * per_unit;
             if rounded.circle().is_some() {
                 let outline = shadow.exact_outline();
-                dispatch!(level, simd => circle::fill(simd, outline, radius, grid, options, scratch, sink));
+                dispatch!(level, simd => circle::fill(simd, outline, radius, on, options, scratch, sink));
             } else {
                 dispatch!(level, simd => {
-                    nine_patch::fill(simd, &rounded, radius, grid, options, scratch, sink);
+                    nine_patch::fill(simd, &rounded, radius, on, options, scratch, sink);
                 });
             }
         }
         Method::Direct | Method::Grid | Method::NinePatch => {
-            let coarse = method == Method::Grid;
-            dispatch!(level, simd => direct::fill(simd, shadow, grid, options, scratch, coarse, sink));
+            let levels = options.tolerance.as_levels();
+            let mut edges = scratch.take();
+            shadow.edges_into(CURVES * levels, 1.0 / per_unit, &mut edges);
+            let radius = shadow.radius() * per_unit;
+            if method == Method::Grid && grid::suits(radius, levels, shadow.extent() * per_unit) {
+                dispatch!(level, simd => grid::fill(simd, &edges, radius, on, options, scratch, sink));
+            } else {
+                let radius = shadow.radius();
+                dispatch!(level, simd => direct::fill(simd, &edges, radius, on, options, scratch, sink));
+            }
+            scratch.give(edges);
         }
     }
 }
+
+/// The share of the tolerance that lines in place of curves may take.
+const CURVES: f64 = 0.25;
 
 /// Puts the parts of a row's `columns` that are seen into `seen`, in the frame's pixels.
 fn seen_columns(

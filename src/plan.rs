@@ -76,7 +76,7 @@ fn on_pixels(shadow: &Shadow, levels: f64, per_unit: f64) -> (Method, &'static s
             "so fine a tolerance leaves nothing to interpolation",
         );
     }
-    let few_steps = radius / grid::steps(levels) >= COARSEST_PITCH;
+    let few_steps = radius >= grid::narrowest(levels);
     let Some(rounded) = nine_patch::suited(shadow, per_unit) else {
         return if few_steps && shadow.is_intricate(per_unit) {
             (

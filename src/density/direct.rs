@@ -12,36 +12,16 @@ use super::{PixelOptions, Sink, averaged_side, seen_columns};
 use crate::grid::Grid;
 use crate::outline::{self, Edge};
 use crate::scratch::Scratch;
-use crate::shadow::Shadow;
 
-/// Gives `sink` the density of every pixel of the grid that is in the shadow.
+/// Gives `sink` the density of every pixel of the grid that is in the shadow of an outline; `radius` in scene units.
 #[inline(always)]
 pub(crate) fn fill<S: Simd>(
     simd: S,
-    shadow: &Shadow,
+    edges: &[Edge],
+    radius: f64,
     grid: &Grid,
     options: &PixelOptions<'_>,
     scratch: &mut Scratch,
-    coarse: bool,
-    sink: &mut dyn Sink,
-) {
-    let mut edges = scratch.take();
-    let levels = CURVES * options.tolerance.as_levels();
-    shadow.edges_into(levels, 1.0 / grid.pixels_per_unit(), &mut edges);
-    let radius = shadow.radius();
-    fill_edges(simd, (&edges, radius), grid, options, scratch, coarse, sink);
-    scratch.give(edges);
-}
-
-/// As [`fill`], for the edges of an outline and a penumbra radius in scene units.
-#[inline(always)]
-pub(crate) fn fill_edges<S: Simd>(
-    simd: S,
-    (edges, radius): (&[Edge], f64),
-    grid: &Grid,
-    options: &PixelOptions<'_>,
-    scratch: &mut Scratch,
-    coarse: bool,
     sink: &mut dyn Sink,
 ) {
     let scale = grid.pixels_per_unit();
@@ -57,10 +37,6 @@ pub(crate) fn fill_edges<S: Simd>(
         .iter()
         .map(|edge| edge.mapped(scale / unit, |p| frame.place(p) / unit));
     scratch.rows.load(placed, sampling.window);
-    if coarse && radius >= 3.0 {
-        super::grid::fill(simd, &frame, radius, options, scratch, sink);
-        return;
-    }
     let (rows, wanted) = (&mut scratch.rows, &mut scratch.wanted);
     let lattice = Lattice {
         window: sampling.window,
@@ -119,6 +95,3 @@ enum Computed {
 
 /// The largest error of averages over pixels, in levels.
 pub(crate) const AVERAGED: f64 = 0.8;
-
-/// The share of the tolerance that lines in place of curves may take.
-const CURVES: f64 = 0.25;

@@ -1,150 +1,216 @@
-//! `grid`: the closed form on a lattice coarser than the pixels, and cubics between (Catmull & Rom 1974).
+//! `grid`: rows of densities some pixels apart, from sums along strips, and cubics between (Catmull & Rom 1974).
 //!
-//! The density is smooth at the scale of the penumbra radius r, so the lattice has a fixed number of steps a radius and a
-//! pixel's cost hardly depends on r. What limits every interpolation are the penumbra's two ends, where the density leaves
-//! 0 and 1 like the power 1.5 of the distance, and points that see many edges at the distance r at once, like the centre
-//! of an arc of radius r. The lattice shows where it is too coarse: there, each node is foretold from its neighbours at twice
-//! the spacing, and cells whose nodes are foretold badly are drawn pixel by pixel.
+//! The outline is cut into strips and summed along each of them, so what the strip of a disc covers is a difference of two
+//! sums: a pixel costs the same whatever the outline, and the strips of one row of discs serve the next. Along the rows
+//! every pixel is computed. From row to row the density is smooth at the scale of the penumbra radius r, so the rows have a fixed
+//! number a radius, and none of them less than a pixel.
+//!
+//! What limits the interpolation are the penumbra's two ends, where the density leaves 0 and 1 like the power 1.5 of the
+//! distance, and points that see many edges at the distance r at once, like the centre of an arc of radius r. The rows show
+//! where they are too far apart: there, each is foretold from its neighbours at twice the distance, and blocks of pixels
+//! that are foretold badly are drawn by the closed form.
 //!
 //! Error: the tolerance.
 
+mod disc;
+mod strips;
+
 use core::ops::Range;
 
-use fearless_simd::{Simd, SimdBase, f32x8};
+use fearless_simd::{Simd, SimdBase, f32x16};
 
+use glam::DVec2;
+
+use self::disc::{Disc, Height};
+use self::strips::{BLOCK, Strips};
 use super::frame::Frame;
 use super::nine_patch::cubic_weights;
-use super::rows::{LANES, Lattice, Points, Rows, Window};
-use super::{Each, PixelOptions, Sink, seen_columns};
+use super::rows::{self, Lattice, Points, Window};
+use super::{PixelOptions, Sink, seen_columns};
+use crate::grid::Grid;
+use crate::outline::{self, Edge};
 use crate::scratch::Scratch;
 
-/// Rows of the lattice that are kept: the four that a pixel is interpolated from, and three more on both sides to foretell
-/// nodes from.
-const RING: usize = 8;
+/// Rows of the lattice that are kept: the four that a pixel is interpolated from, and two more on both sides to foretell
+/// them from.
+const RING: i64 = 8;
 
-/// The steps a penumbra radius for a tolerance of one level.
-const STEPS: f64 = 14.0;
+/// The rows a penumbra radius for a tolerance of one level.
+const STEPS: f64 = 12.0;
 
-/// The steps a penumbra radius that keep the penumbra's ends within a tolerance: their error falls with the power of 1.5.
+/// The rows a penumbra radius that keep the penumbra's ends within a tolerance: their error falls with the power of 1.5.
 pub(crate) fn steps(levels: f64) -> f64 {
     STEPS * libm::pow(1.0 / levels, if levels < 1.0 { 1.0 / 1.5 } else { 0.5 })
 }
 
-/// A row of the lattice has at least so many columns: eight at once are foretold, from three more on both sides.
-const LEAST: i64 = LANES as i64 + 6;
+/// Strips from row to row.
+const STRIPS: i64 = 3;
 
-/// Columns of the lattice before the shadow begins.
-const MARGIN: f64 = 4.0;
+/// How far a row may be from what its neighbours at twice the distance foretell, over the tolerance. At the penumbra's
+/// ends that is 2.8 times the error between rows, at the tip of a cone twice.
+const LIMIT: f64 = 0.9;
+
+/// So many blocks of pixels are computed at once at most.
+const MOST: usize = 3;
+
+/// The sums along a strip are exact up to here.
+const EXACT: f64 = 16_777_216.0;
+
+/// The steps that a strip's height is cut into, at most and at least.
+const FULL: [f64; 2] = [256.0, 64.0];
 
 /// What this method leaves from drawing to drawing: memory.
 #[derive(Debug, Default)]
 pub(crate) struct GridScratch {
-    rows: Rows,
-    /// The last rows of the lattice, each with its densities, the same on the pixels' columns, and its constant runs there.
-    ring: [Knots; RING],
-    /// Where each pixel's four neighbours begin in a row of the lattice, and their weights.
-    places: Vec<u32>,
-    weights: Vec<[f32; 4]>,
-    /// How far nodes of a row are from what their neighbours foretell.
-    surprises: [Vec<f32>; 2],
-    /// Columns of pixels that are drawn one by one in the present row of cells.
+    strips: Strips,
+    disc: Disc,
+    sums: Sums,
+    /// The last rows of the lattice.
+    ring: [Row; RING as usize],
+    /// Columns of pixels that are drawn one by one between two rows.
     coarse: Vec<Range<i64>>,
     values: Vec<f32>,
 }
 
+/// Rows of sums: of single strips, of all those from one of the lattice's rows to the next, and of two such groups.
 #[derive(Debug, Default)]
-struct Knots {
+struct Sums {
+    /// Blocks and sums of a row.
+    blocks: usize,
+    length: usize,
+    /// How many rows of strips are kept and how many of the others, less one: powers of two.
+    strips: i64,
+    groups: i64,
+    /// The strips' rows, the groups' and the pairs'.
+    sums: Vec<f32>,
+    /// The blocks of each group that edges cross, a bit each.
+    crossed: Vec<u64>,
+    now: Vec<bool>,
+    /// What the blocks of a row of discs see.
+    mixed: Vec<u64>,
+}
+
+/// A row of the lattice.
+#[derive(Debug, Default)]
+struct Row {
     densities: Vec<f32>,
-    pixels: Vec<f32>,
     /// Runs of pixels from left to right without a gap, with their density where it is one.
     runs: Vec<(i64, Option<f32>)>,
+    /// Blocks that are not as their neighbours foretell.
+    surprises: Vec<bool>,
 }
 
-/// Where the lattice's columns and rows are.
-#[derive(Debug, Clone, Copy)]
-struct Net {
-    /// Pixels from knot to knot.
-    spacing: f64,
-    /// The fraction of a pixel by which pixels begin after the frame's.
-    phase: f64,
+/// Pixels from one of the lattice's strips to the next.
+fn strip_height(radius: f64, levels: f64) -> f64 {
+    radius / steps(levels) / STRIPS as f64
 }
 
-impl Net {
-    /// A pixel's place among the knots.
-    fn place(&self, pixel: i64) -> f64 {
-        (pixel as f64 + self.phase + 0.5) / self.spacing + MARGIN
-    }
-
-    /// The first pixel at a knot or after it.
-    fn pixel(&self, knot: i64) -> i64 {
-        ((knot as f64 - MARGIN) * self.spacing - self.phase - 0.5).ceil() as i64
-    }
+/// The steps that a strip's height is cut into so that sums along so many cells are exact, and those of a disc.
+fn full(radius: f64, height: f64, cells: f64) -> f64 {
+    let most = (2.0 * STRIPS as f64 * cells).max(4.0 * radius * radius / height);
+    libm::exp2(libm::log2(EXACT / most).floor()).min(FULL[0])
 }
 
-/// Gives `sink` the density of every pixel of the grid that is in the shadow and not hidden; `scratch.rows` holds the
-/// outline in units of the penumbra radius, `radius` pixels.
+/// The cells of a shadow of so many columns of pixels, with what its discs reach beyond.
+fn cells(columns: f64, radius: f64) -> f64 {
+    columns + 4.0 * radius + 8.0 * BLOCK as f64
+}
+
+/// Whether the shadow of an outline `columns` pixels wide can be drawn by this method: its penumbra is wide enough, and all
+/// sums stay exact.
+pub(crate) fn suits(radius: f64, levels: f64, columns: f64) -> bool {
+    radius >= narrowest(levels)
+        && full(radius, strip_height(radius, levels), cells(columns, radius)) >= FULL[1]
+}
+
+/// The least penumbra radius, in pixels, for which cells of a pixel's width keep a tolerance. Where an upright edge halves a
+/// cell at the disc's end, linear sums are wrong by a quarter of it along sqrt(8 r) pixels: 57 r^-1.5 levels.
+pub(crate) fn narrowest(levels: f64) -> f64 {
+    let share = 0.7 * levels;
+    libm::cbrt((57.0 / share) * (57.0 / share))
+}
+
+/// Gives `sink` the density of every pixel of the grid that is in the shadow of an outline and not hidden; `radius` in pixels.
 #[inline(always)]
 pub(crate) fn fill<S: Simd>(
     simd: S,
-    frame: &Frame,
+    edges: &[Edge],
     radius: f64,
+    grid: &Grid,
     options: &PixelOptions<'_>,
     scratch: &mut Scratch,
     sink: &mut dyn Sink,
 ) {
+    let bounds = outline::bounds(edges.iter());
+    let Some(frame) = bounds.map(|bounds| Frame::new(bounds, radius, grid)) else {
+        return;
+    };
+    let [columns, lines] = frame.pixels();
+    if columns.is_empty() || lines.is_empty() {
+        return;
+    }
+    let placed = |unit: f64| {
+        edges
+            .iter()
+            .map(move |edge| edge.mapped(frame.scale / unit, |p| frame.place(p) / unit))
+    };
+    let levels = options.tolerance.as_levels();
+    let (pitch, height) = (radius / steps(levels), strip_height(radius, levels));
     let Scratch {
         rows: pixel_rows,
         grid: kept,
         wanted,
         ..
     } = scratch;
-    let levels = options.tolerance.as_levels();
-    let steps = steps(levels);
-    let across = Net {
-        spacing: radius / steps,
-        phase: frame.phase.x,
+    let full = full(radius, height, cells(frame.extent.x - 2.0 * radius, radius));
+    kept.disc.set(radius, height, STRIPS, full);
+    let margin = (kept.disc.reach() + 2).div_ceil(BLOCK);
+    // Whole blocks of the shadow, whatever part of it the grid shows.
+    let first = columns.start - columns.start % BLOCK as i64;
+    let blocks = ((columns.end - first) as usize).div_ceil(BLOCK) + 2 * margin;
+    kept.strips
+        .begin(first - (margin * BLOCK) as i64, blocks, full);
+    let strip = |p: DVec2| DVec2::new(p.x - frame.phase.x, p.y / height);
+    rows::each_line(placed(radius), |from, to| {
+        kept.strips.push(strip(from * radius), strip(to * radius));
+    });
+    kept.strips.end();
+    kept.sums.begin(blocks, &kept.disc);
+    let mut weaver = Weaver {
+        columns: columns.clone(),
+        first,
+        margin,
+        next: i64::MIN,
+        next_group: i64::MIN,
+        limit: (LIMIT * levels / 255.0) as f32,
+        full: full as f32,
+        kept,
     };
-    let down = Net {
-        phase: frame.phase.y,
-        ..across
-    };
-    let [columns, lines] = frame.pixels();
-    if columns.is_empty() || lines.is_empty() {
-        return;
-    }
+    let origin = frame.first[0];
     let pixels = Lattice {
         window: Window::Disc,
         start: (frame.phase.x + 0.5) / radius,
         pitch: 1.0 / radius,
         density: radius,
     };
-    kept.rows.load_from(pixel_rows);
-    let knots = across.place(columns.start) as i64 - 4..across.place(columns.end) as i64 + 6;
-    let mut weaver = Weaver {
-        kept,
-        across,
-        columns: columns.clone(),
-        knots: knots.start..knots.end.max(knots.start + LEAST),
-        next: down.place(lines.start) as i64 - 3,
-        steps,
-        limit: (LIMIT * levels / 255.0) as f32,
-    };
-    weaver.find_places();
-    let origin = frame.first[0];
+    let mut loaded = false;
     let mut cell = None;
     for line in lines {
-        let place = down.place(line);
-        let knot = place as i64;
-        weaver.weave_to(simd, knot + 4);
+        let number = (line - frame.first[1]) as u32;
+        seen_columns(options.hidden, number, &frame, &columns, wanted);
+        if wanted.is_empty() {
+            continue;
+        }
+        let place = (line as f64 + frame.phase.y + 0.5) / pitch;
+        let knot = place.floor() as i64;
+        weaver.weave_to(simd, knot - 3, knot + 4);
         if cell != Some(knot) {
             weaver.find_coarse(simd, knot, cell == Some(knot - 1));
             cell = Some(knot);
         }
-        let number = (line - frame.first[1]) as u32;
-        seen_columns(options.hidden, number, frame, &columns, wanted);
         let woven = Woven {
             knot,
-            weights: cubic_weights(place.fract()),
+            weights: cubic_weights(place - knot as f64),
             number,
             origin,
         };
@@ -161,6 +227,10 @@ pub(crate) fn fill<S: Simd>(
             weaver.give(simd, &woven, at..wanted.end, sink);
         }
         if !weaver.kept.coarse.is_empty() {
+            if !loaded {
+                pixel_rows.load(placed(radius), Window::Disc);
+                loaded = true;
+            }
             let y = (line as f64 + frame.phase.y + 0.5) / radius;
             pixel_rows.go_to(y, columns.clone(), &pixels, &Points::CENTER);
             pixel_rows.clear();
@@ -177,31 +247,6 @@ pub(crate) fn fill<S: Simd>(
     }
 }
 
-/// How far a knot may be from what its neighbours at twice the spacing foretell, over the tolerance. At the penumbra's
-/// ends that is 2.8 times the error between knots, at the tip of a cone twice.
-const LIMIT: f64 = 0.9;
-
-/// The sum of the first four densities by their weights.
-#[inline(always)]
-pub(super) fn interpolate(near: &[f32], weights: &[f32; 4]) -> f32 {
-    let Some(near) = near.first_chunk::<4>() else {
-        return 0.0;
-    };
-    let mut parts = [0.0; 4];
-    for index in 0..4 {
-        parts[index] = near[index] * weights[index];
-    }
-    (parts[0] + parts[1]) + (parts[2] + parts[3])
-}
-
-/// Eight knots as their neighbours at one and three steps on both sides foretell them.
-#[inline(always)]
-fn foretold<S: Simd>(simd: S, [a, b, c, d]: [&[f32]; 4]) -> f32x8<S> {
-    let near = f32x8::from_slice(simd, &b[..LANES]) + f32x8::from_slice(simd, &c[..LANES]);
-    let far = f32x8::from_slice(simd, &a[..LANES]) + f32x8::from_slice(simd, &d[..LANES]);
-    near * (9.0 / 16.0) - far * (1.0 / 16.0)
-}
-
 /// A line of pixels: the row of the lattice above it, the weights of the four rows about it, its number on the grid and the
 /// column at which the grid begins.
 struct Woven {
@@ -211,36 +256,151 @@ struct Woven {
     origin: i64,
 }
 
-/// Goes down the lattice row by row.
-struct Weaver<'a> {
-    kept: &'a mut GridScratch,
-    across: Net,
-    columns: Range<i64>,
-    knots: Range<i64>,
-    /// The next row of the lattice.
-    next: i64,
-    steps: f64,
-    limit: f32,
-}
+impl Sums {
+    fn begin(&mut self, blocks: usize, disc: &Disc) {
+        self.blocks = blocks;
+        self.length = blocks * BLOCK + 1;
+        let kept = |rows: i64| (rows as u64).next_power_of_two() as i64 - 1;
+        self.strips = kept(2 * disc.half + 2 * STRIPS);
+        self.groups = kept(2 * disc.half / STRIPS + 4);
+        let rows = (self.strips + 1) + 2 * (self.groups + 1);
+        self.sums.resize(rows as usize * self.length, 0.0);
+        let words = self.words();
+        self.crossed.resize((self.groups + 1) as usize * words, 0);
+        self.now.clear();
+        self.now.resize(blocks, false);
+    }
 
-impl Weaver<'_> {
-    fn find_places(&mut self) {
-        let kept = &mut *self.kept;
-        kept.places.clear();
-        kept.weights.clear();
-        for column in self.columns.clone() {
-            let place = self.across.place(column);
-            let knot = place as i64;
-            kept.places.push((knot - 1 - self.knots.start) as u32);
-            kept.weights.push(cubic_weights(place - knot as f64));
+    /// Where the sums of a strip begin, those of a group, and those of it and the one below.
+    fn strip(&self, strip: i64) -> usize {
+        (strip & self.strips) as usize * self.length
+    }
+
+    fn group(&self, group: i64) -> usize {
+        (self.strips + 1 + (group & self.groups)) as usize * self.length
+    }
+
+    fn pair(&self, group: i64) -> usize {
+        (self.strips + 1 + self.groups + 1 + (group & self.groups)) as usize * self.length
+    }
+
+    fn words(&self) -> usize {
+        self.blocks.div_ceil(64)
+    }
+
+    /// The bits of a group.
+    fn bits(&self, group: i64) -> Range<usize> {
+        let start = (group & self.groups) as usize * self.words();
+        start..start + self.words()
+    }
+
+    /// Sums the strips of a group.
+    #[inline(always)]
+    fn sum<S: Simd>(&mut self, simd: S, strips: &mut Strips, group: i64) {
+        let bits = self.bits(group);
+        let crossed = &mut self.crossed[bits];
+        crossed.fill(0);
+        let first = group * STRIPS;
+        for strip in first..first + STRIPS {
+            let at = (strip & self.strips) as usize * self.length;
+            strips.sum(
+                simd,
+                strip,
+                &mut self.sums[at..at + self.length],
+                &mut self.now,
+            );
+            for (block, _) in self.now.iter().enumerate().filter(|(_, crossed)| **crossed) {
+                crossed[block / 64] |= 1 << (block % 64);
+            }
+        }
+        self.copy(self.strip(first), self.group(group));
+        for strip in first + 1..first + STRIPS {
+            self.add(self.strip(strip), self.group(group));
+        }
+        self.copy(self.group(group - 1), self.pair(group - 1));
+        self.add(self.group(group), self.pair(group - 1));
+    }
+
+    fn copy(&mut self, from: usize, to: usize) {
+        self.sums.copy_within(from..from + self.length, to);
+    }
+
+    /// Adds a row to one behind it.
+    #[inline(always)]
+    fn add(&mut self, from: usize, to: usize) {
+        let (before, behind) = self.sums.split_at_mut(to);
+        let from = &before[from..from + self.length];
+        for (sum, other) in behind.iter_mut().zip(from) {
+            *sum += *other;
         }
     }
 
-    /// Computes the lattice's rows up to and with `last`.
+    /// Finds the blocks from which the discs of a lattice's row see an edge.
+    fn find_mixed(&mut self, disc: &Disc, row: i64) {
+        self.mixed.clear();
+        self.mixed.resize(self.words(), 0);
+        // From the widest of the disc's chords to the narrowest, all reach farther by one block at a time.
+        let mut reached = disc.reach() / BLOCK + 1;
+        for chord in disc.chords.iter().skip(1).step_by(2) {
+            let farthest = chord.whole / BLOCK + 1;
+            while reached > farthest {
+                widen(&mut self.mixed);
+                reached -= 1;
+            }
+            let first = chord.strip / STRIPS;
+            let groups = first..first + if chord.height == Height::Pair { 2 } else { 1 };
+            for group in groups {
+                for group in [row + group, row - group - 1] {
+                    let bits = self.bits(group);
+                    for (mixed, crossed) in self.mixed.iter_mut().zip(&self.crossed[bits]) {
+                        *mixed |= *crossed;
+                    }
+                }
+            }
+        }
+        for _ in 0..reached {
+            widen(&mut self.mixed);
+        }
+    }
+}
+
+/// Sets the bits beside those that are set.
+fn widen(bits: &mut [u64]) {
+    let mut before = 0;
+    for word in 0..bits.len() {
+        let after = bits.get(word + 1).copied().unwrap_or(0);
+        let now = bits[word];
+        bits[word] |= (now << 1) | (now >> 1) | (before >> 63) | (after << 63);
+        before = now;
+    }
+}
+
+/// Goes down the lattice row by row.
+struct Weaver<'a> {
+    kept: &'a mut GridScratch,
+    columns: Range<i64>,
+    /// The column of the first block of pixels.
+    first: i64,
+    /// Blocks of sums left and right of the pixels.
+    margin: usize,
+    /// The next row of the lattice, and the next group of strips.
+    next: i64,
+    next_group: i64,
+    limit: f32,
+    full: f32,
+}
+
+impl Weaver<'_> {
+    /// Groups of strips from the middle of a disc to its end.
+    fn groups(&self) -> i64 {
+        (self.kept.disc.half + STRIPS - 1) / STRIPS
+    }
+
+    /// Computes the lattice's rows from `first` to `last`.
     #[inline(always)]
-    fn weave_to<S: Simd>(&mut self, simd: S, last: i64) {
+    fn weave_to<S: Simd>(&mut self, simd: S, first: i64, last: i64) {
         // Rows that no pixel needs are passed over.
-        self.next = self.next.max(last + 1 - RING as i64);
+        self.next = self.next.max(first);
         while self.next <= last {
             self.weave(simd, self.next);
             self.next += 1;
@@ -249,145 +409,111 @@ impl Weaver<'_> {
 
     #[inline(always)]
     fn weave<S: Simd>(&mut self, simd: S, row: i64) {
-        let lattice = Lattice {
-            window: Window::Disc,
-            start: -MARGIN / self.steps,
-            pitch: 1.0 / self.steps,
-            density: self.steps,
-        };
-        let kept = &mut *self.kept;
-        let rows = &mut kept.rows;
-        let y = (row as f64 - MARGIN) / self.steps;
-        if !rows.is_still(y) {
-            rows.go_to(y, self.knots.clone(), &lattice, &Points::CENTER);
-            rows.clear();
-            rows.compute(simd, self.knots.clone(), &lattice, &Points::CENTER);
+        let reach = self.groups();
+        let GridScratch {
+            strips,
+            disc,
+            sums,
+            ring,
+            ..
+        } = &mut *self.kept;
+        self.next_group = self.next_group.max(row - reach);
+        while self.next_group < row + reach {
+            sums.sum(simd, strips, self.next_group);
+            self.next_group += 1;
         }
-        let knots = &mut kept.ring[row.rem_euclid(RING as i64) as usize];
-        let width = (self.knots.end - self.knots.start) as usize;
-        knots.densities.clear();
-        knots.densities.resize(width, 0.0);
-        let mut sink = Each {
-            pixels: &mut knots.densities,
-            stride: width,
-            put: |to: &mut f32, density| *to = density,
+        sums.find_mixed(disc, row);
+        disc.lay(|chord| {
+            let group = || row + chord.strip.div_euclid(STRIPS);
+            match chord.height {
+                Height::Strip => sums.strip(row * STRIPS + chord.strip),
+                Height::Group => sums.group(group()),
+                Height::Pair => sums.pair(group()),
+            }
+        });
+        let woven = &mut ring[row.rem_euclid(RING) as usize];
+        woven.runs.clear();
+        let blocks = sums.blocks - 2 * self.margin;
+        woven.densities.resize(blocks * BLOCK, 0.0);
+        let middle = sums.group(row);
+        let cell = self.full * STRIPS as f32;
+        let is_mixed = |block: usize| {
+            let number = block + self.margin;
+            block < blocks && sums.mixed[number / 64] >> (number % 64) & 1 == 1
         };
-        rows.give(0, self.knots.clone(), self.knots.start, &mut sink);
-
-        knots.runs.clear();
-        let mut at = self.columns.start;
-        let mut constant = |from: i64, to: i64, density: f32| {
-            // All four neighbours of these pixels are of the one density.
-            let start = self.across.pixel(from + 1).clamp(at, self.columns.end);
-            let end = self.across.pixel(to - 2).clamp(start, self.columns.end);
-            if start < end {
-                if start > at {
-                    knots.runs.push((start, None));
+        let mut block = 0;
+        while block < blocks {
+            let at = (block + self.margin) * BLOCK;
+            let densities = &mut woven.densities[block * BLOCK..];
+            let (count, constant) = if is_mixed(block) {
+                let count = (1..MOST).take_while(|&more| is_mixed(block + more)).count() + 1;
+                match count {
+                    1 => disc.densities::<S, 1>(simd, at, &sums.sums, densities),
+                    2 => disc.densities::<S, 2>(simd, at, &sums.sums, densities),
+                    _ => disc.densities::<S, MOST>(simd, at, &sums.sums, densities),
                 }
-                knots.runs.push((end, Some(density)));
-                at = end;
+                (count, None)
+            } else {
+                let covered = sums.sums[middle + at + 1] - sums.sums[middle + at];
+                let density = (covered / cell).clamp(0.0, 1.0);
+                densities[..BLOCK].fill(density);
+                (1, Some(density))
+            };
+            block += count;
+            let end = self.first + (block * BLOCK) as i64;
+            let end = end.min(self.columns.end);
+            match woven.runs.last_mut() {
+                Some((last, density)) if *density == constant => *last = end,
+                _ => woven.runs.push((end, constant)),
             }
-        };
-        let mut knot = self.knots.start;
-        for (columns, density) in rows.spans() {
-            constant(knot, columns.start, 0.0);
-            if let Some(density) = density {
-                constant(columns.start, columns.end, density);
-            }
-            knot = columns.end;
-        }
-        constant(knot, self.knots.end + 3, 0.0);
-        if at < self.columns.end {
-            knots.runs.push((self.columns.end, None));
-        }
-
-        let count = (self.columns.end - self.columns.start) as usize;
-        knots.pixels.resize(count + LANES, 0.0);
-        let mut start = 0;
-        for (end, density) in &knots.runs {
-            let end = (end - self.columns.start) as usize;
-            match density {
-                Some(density) => knots.pixels[start..end].fill(*density),
-                None => {
-                    let places = kept.places[start..end]
-                        .iter()
-                        .zip(&kept.weights[start..end]);
-                    for (pixel, (place, weights)) in knots.pixels[start..end].iter_mut().zip(places)
-                    {
-                        *pixel = interpolate(&knots.densities[*place as usize..], weights);
-                    }
-                }
-            }
-            start = end;
         }
     }
 
-    /// Finds the columns of the cells below a row of the lattice that are too coarse. `went_on`: the last time it was the row
-    /// above.
+    /// Finds the columns of the pixels below a row of the lattice for which its rows are too far apart. `went_on`: the last
+    /// time it was the row above.
     #[inline(always)]
     fn find_coarse<S: Simd>(&mut self, simd: S, row: i64, went_on: bool) {
-        if went_on {
-            self.kept.surprises.swap(0, 1);
-        } else {
-            self.surprise(simd, row, 0);
+        if !went_on {
+            self.surprise(simd, row);
         }
-        self.surprise(simd, row + 1, 1);
-        let kept = &mut *self.kept;
-        kept.coarse.clear();
-        let [above, below] = &kept.surprises;
-        // A peak between knots shows at those beyond the cell as well.
-        for index in 3..above.len().saturating_sub(4) {
-            let near = above[index - 1..index + 3].iter();
-            let worst = near
-                .chain(&below[index - 1..index + 3])
-                .fold(0.0, |a: f32, b| a.max(*b));
-            if worst <= self.limit {
+        self.surprise(simd, row + 1);
+        let GridScratch { ring, coarse, .. } = &mut *self.kept;
+        let at = |row: i64| &ring[row.rem_euclid(RING) as usize].surprises;
+        coarse.clear();
+        for (block, (above, below)) in at(row).iter().zip(at(row + 1)).enumerate() {
+            if !above && !below {
                 continue;
             }
-            let knot = self.knots.start + index as i64;
-            let start = self.across.pixel(knot).max(self.columns.start);
-            let end = self.across.pixel(knot + 1).min(self.columns.end);
-            match kept.coarse.last_mut() {
+            let start = self.first + (block * BLOCK) as i64;
+            let end = (start + BLOCK as i64).min(self.columns.end);
+            let start = start.max(self.columns.start);
+            match coarse.last_mut() {
                 Some(last) if last.end == start => last.end = end,
-                _ if start < end => kept.coarse.push(start..end),
-                _ => {}
+                _ => coarse.push(start..end),
             }
         }
     }
 
-    /// How far each knot of a row is from what its neighbours at one and three steps foretell, along the row and across.
+    /// Finds the blocks of a row that its neighbours at one and three rows foretell badly.
     #[inline(always)]
-    fn surprise<S: Simd>(&mut self, simd: S, row: i64, which: usize) {
-        let kept = &mut *self.kept;
-        let near =
-            |offset: i64| &kept.ring[(row + offset).rem_euclid(RING as i64) as usize].densities;
-        let here = near(0);
-        let columns = [near(-3), near(-1), near(1), near(3)];
-        let surprises = &mut kept.surprises[which];
+    fn surprise<S: Simd>(&mut self, simd: S, row: i64) {
+        let ring = &mut self.kept.ring;
+        let mut surprises = core::mem::take(&mut ring[row.rem_euclid(RING) as usize].surprises);
         surprises.clear();
-        surprises.resize(here.len(), 0.0);
-        let last = here.len().saturating_sub(LANES + 3);
-        let mut at = 3;
-        while at <= last {
-            let density = f32x8::from_slice(simd, &here[at..at + LANES]);
-            let along = foretold(
-                simd,
-                [
-                    &here[at - 3..],
-                    &here[at - 1..],
-                    &here[at + 1..],
-                    &here[at + 3..],
-                ],
-            );
-            let [a, b, c, d] = columns;
-            let across = foretold(simd, [&a[at..], &b[at..], &c[at..], &d[at..]]);
-            let surprise = (density - along).abs().max((density - across).abs());
-            surprise.store_slice(&mut surprises[at..at + LANES]);
-            if at == last {
-                break;
-            }
-            at = (at + LANES).min(last);
+        let near = |offset: i64| {
+            let row = &ring[(row + offset).rem_euclid(RING) as usize];
+            row.densities.as_chunks::<BLOCK>().0.iter()
+        };
+        let limit = f32x16::splat(simd, self.limit);
+        let outer = near(-3).zip(near(3));
+        for ((here, (a, b)), (c, d)) in near(0).zip(near(-1).zip(near(1))).zip(outer) {
+            let here = f32x16::from_slice(simd, here);
+            let (a, b) = (f32x16::from_slice(simd, a), f32x16::from_slice(simd, b));
+            let (c, d) = (f32x16::from_slice(simd, c), f32x16::from_slice(simd, d));
+            let surprise = here - ((a + b) * (9.0 / 16.0) - (c + d) * (1.0 / 16.0));
+            surprises.push(simd.any_true_mask32x16(surprise.abs().simd_gt(limit)));
         }
+        ring[row.rem_euclid(RING) as usize].surprises = surprises;
     }
 
     /// Gives `sink` the pixels of a line below a row of the lattice, interpolated.
@@ -400,23 +526,27 @@ impl Weaver<'_> {
             origin,
         } = *line;
         let GridScratch { ring, values, .. } = &mut *self.kept;
-        let rows =
-            [-1, 0, 1, 2].map(|offset| &ring[(row + offset).rem_euclid(RING as i64) as usize]);
+        let rows = [-1, 0, 1, 2].map(|offset| &ring[(row + offset).rem_euclid(RING) as usize]);
         let mut runs = [0; 4];
         let mut at = columns.start;
-        let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
+        let (zero, one) = (f32x16::splat(simd, 0.0), f32x16::splat(simd, 1.0));
         while at < columns.end {
             let mut end = columns.end;
-            let mut constant = Some(0.0);
+            let (mut constant, mut alike) = (Some(0.0), true);
             for index in 0..4 {
                 while rows[index].runs[runs[index]].0 <= at {
                     runs[index] += 1;
                 }
                 let (run_end, density) = rows[index].runs[runs[index]];
                 end = end.min(run_end);
+                alike &= density == rows[0].runs[runs[0]].1;
                 constant = constant
                     .zip(density)
                     .map(|(sum, density)| sum + density * weights[index]);
+            }
+            if alike {
+                // Whatever the weights add up to.
+                constant = rows[0].runs[runs[0]].1;
             }
             let first = (at - origin) as u32;
             match constant {
@@ -426,20 +556,22 @@ impl Weaver<'_> {
                 Some(_) => {}
                 None => {
                     let count = (end - at) as usize;
-                    let start = (at - self.columns.start) as usize;
-                    values.resize(count.next_multiple_of(LANES), 0.0);
-                    for offset in (0..count).step_by(LANES) {
-                        let part = start + offset..start + offset + LANES;
-                        let load = |row: usize| &rows[row].pixels[part.clone()];
-                        let [a, b, c, d] = [load(0), load(1), load(2), load(3)];
-                        let sum = f32x8::from_slice(simd, a) * weights[0]
-                            + f32x8::from_slice(simd, b) * weights[1]
-                            + (f32x8::from_slice(simd, c) * weights[2]
-                                + f32x8::from_slice(simd, d) * weights[3]);
-                        let sum = sum.max(zero).min(one);
-                        sum.store_slice(&mut values[offset..offset + LANES]);
+                    // From the beginning of a block on, so that all stay within their rows.
+                    let start = (at - self.first) as usize;
+                    let before = start % BLOCK;
+                    values.resize((before + count).next_multiple_of(BLOCK), 0.0);
+                    let blocks = values.as_chunks_mut::<BLOCK>().0;
+                    for (offset, values) in (start - before..).step_by(BLOCK).zip(blocks) {
+                        let part = offset..offset + BLOCK;
+                        let a = f32x16::from_slice(simd, &rows[0].densities[part.clone()]);
+                        let b = f32x16::from_slice(simd, &rows[1].densities[part.clone()]);
+                        let c = f32x16::from_slice(simd, &rows[2].densities[part.clone()]);
+                        let d = f32x16::from_slice(simd, &rows[3].densities[part]);
+                        let sum =
+                            a * weights[0] + b * weights[1] + (c * weights[2] + d * weights[3]);
+                        sum.max(zero).min(one).store_slice(values);
                     }
-                    sink.values(number, first, &values[..count]);
+                    sink.values(number, first, &values[before..before + count]);
                 }
             }
             at = end;

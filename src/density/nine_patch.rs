@@ -15,7 +15,6 @@ use fearless_simd::{Simd, SimdBase, SimdFloat, f32x8};
 use glam::DVec2;
 
 use super::frame::Frame;
-use super::grid::interpolate;
 use super::rounded::Rounded;
 use super::rows::{LANES, Lattice, Points, Rows, Window, half_disc, half_disc_x8};
 use super::{Each, PixelOptions, Sink, seen_columns};
@@ -392,6 +391,19 @@ pub(super) fn cubic_weights(share: f64) -> [f32; 4] {
         -0.5 * u * t * t,
     ]
     .map(|weight| weight as f32)
+}
+
+/// The sum of the first four densities by their weights.
+#[inline(always)]
+fn interpolate(near: &[f32], weights: &[f32; 4]) -> f32 {
+    let Some(near) = near.first_chunk::<4>() else {
+        return 0.0;
+    };
+    let mut parts = [0.0; 4];
+    for index in 0..4 {
+        parts[index] = near[index] * weights[index];
+    }
+    (parts[0] + parts[1]) + (parts[2] + parts[3])
 }
 
 impl Zone {

@@ -9,6 +9,7 @@ mod kernels;
 mod pieces;
 
 pub(crate) use kernels::{LANES, half_disc, half_disc_x8};
+pub(crate) use pieces::each_line;
 
 use core::ops::Range;
 
@@ -174,24 +175,6 @@ impl Rows {
     pub(crate) fn load(&mut self, edges: impl Iterator<Item = Edge>, window: Window) {
         pieces::cut(edges, window, &mut self.pieces);
         self.rewind();
-    }
-
-    /// Takes the pieces that another has.
-    pub(crate) fn load_from(&mut self, other: &Self) {
-        self.pieces.clear();
-        self.pieces.extend_from_slice(&other.pieces);
-        self.rewind();
-    }
-
-    /// What was computed of the present row: columns, and their density where it is one. Where there is nothing it is 0.
-    pub(crate) fn spans(&self) -> impl Iterator<Item = (Range<i64>, Option<f32>)> {
-        self.spans.iter().map(|span| {
-            let density = match span.kind {
-                Kind::Constant(density) => Some(density),
-                Kind::Values(_) => None,
-            };
-            (span.columns.clone(), density)
-        })
     }
 
     /// Back to the top.

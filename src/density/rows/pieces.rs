@@ -55,7 +55,7 @@ pub(super) fn cut(edges: impl Iterator<Item = Edge>, window: Window, pieces: &mu
         match edge {
             Edge::Line(line) | Edge::Border(line) => push_line(line.from, line.to, pieces),
             Edge::Arc(arc) if window == Window::Square || arc.radius > LARGEST => {
-                flatten(&arc, window, pieces);
+                flatten(&arc, window, |from, to| push_line(from, to, pieces));
             }
             Edge::Arc(arc) => push_arc(&arc, first, pieces),
         }
@@ -69,6 +69,16 @@ pub(super) fn cut(edges: impl Iterator<Item = Edge>, window: Window, pieces: &mu
             .find(|order| order.is_ne())
             .unwrap_or(core::cmp::Ordering::Equal)
     });
+}
+
+/// Calls `line` with the lines that edges are drawn as, in units of the penumbra radius.
+pub(crate) fn each_line(edges: impl Iterator<Item = Edge>, mut line: impl FnMut(DVec2, DVec2)) {
+    for edge in edges {
+        match edge {
+            Edge::Line(straight) | Edge::Border(straight) => line(straight.from, straight.to),
+            Edge::Arc(arc) => flatten(&arc, Window::Disc, &mut line),
+        }
+    }
 }
 
 /// Joins a loop's last piece with its first where these are one arc.
@@ -169,7 +179,7 @@ fn extreme(arc: &Arc, angle: f64) -> DVec2 {
 /// Cuts an arc into pieces, each replaced by the two lines that enclose as much: what a window sees wholly is exact, and
 /// only where it cuts a piece is there an error. With a piece's chord c and sagitta s that is 0.0247 s c for each of the two
 /// cut, 0.049 c³ / (8 radius) for both, and no more than s / 3 along the window's width.
-fn flatten(arc: &Arc, window: Window, pieces: &mut Vec<Piece>) {
+fn flatten(arc: &Arc, window: Window, mut line: impl FnMut(DVec2, DVec2)) {
     let area = match window {
         Window::Disc => PI,
         Window::Square => 1.0,
@@ -191,8 +201,8 @@ fn flatten(arc: &Arc, window: Window, pieces: &mut Vec<Piece>) {
         };
         let middle = arc.at(arc.start + arc.sweep * ((index as f64 + 0.5) / count));
         let top = arc.center + (middle - arc.center) * apex;
-        push_line(from, top, pieces);
-        push_line(top, to, pieces);
+        line(from, top);
+        line(top, to);
         from = to;
     }
 }

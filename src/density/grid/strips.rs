@@ -1,0 +1,209 @@
+//! What an outline covers of strips across the pixels, as sums along each strip.
+//!
+//! A strip's cells are as wide as a pixel and as high as the strip. A line adds whole steps to the cells that it crosses
+//! and to all on their right: the y of its ends is rounded to such steps, so those of a closed loop cancel exactly, whatever
+//! part of the plane is looked at.
+
+use fearless_simd::{Simd, SimdBase, f32x16};
+use glam::DVec2;
+
+/// Cells that are taken at once.
+pub(super) const BLOCK: usize = 16;
+
+/// Goes down the strips of one outline.
+#[derive(Debug, Default)]
+pub(crate) struct Strips {
+    lines: Vec<StripLine>,
+    /// How many lines have been reached, and those of them that have not been left behind.
+    reached: usize,
+    active: Vec<u32>,
+    /// The steps that a strip's height is cut into, and their number as a cell's whole area.
+    full: f64,
+    left: f64,
+    /// By how much each cell covers more steps than the one before.
+    deltas: Vec<i32>,
+    /// The steps that each block of the last strip had all over.
+    before: Vec<i32>,
+}
+
+/// A line from top to bottom, y in strips.
+#[derive(Debug, Clone, Copy)]
+struct StripLine {
+    top: f64,
+    bottom: f64,
+    /// The x at both ends, in pixels, and what it gains from strip to strip.
+    from: f64,
+    to: f64,
+    slope: f64,
+    /// 1 where what is right of it is covered, else -1.
+    side: f64,
+}
+
+impl Strips {
+    /// Begins an outline seen from column `left` on, `blocks` blocks wide. `full` is the number of steps.
+    pub(super) fn begin(&mut self, left: i64, blocks: usize, full: f64) {
+        self.lines.clear();
+        self.active.clear();
+        self.reached = 0;
+        self.left = left as f64;
+        self.full = full;
+        self.deltas.clear();
+        self.deltas.resize(blocks * BLOCK + 1, 0);
+        self.before.clear();
+        self.before.resize(blocks, 0);
+    }
+
+    /// Takes a line: x in pixels, y in strips.
+    pub(super) fn push(&mut self, from: DVec2, to: DVec2) {
+        let round = |y: f64| (y * self.full).round() / self.full;
+        let (start, end) = (round(from.y), round(to.y));
+        let (top, bottom, upper, lower, side) = if start < end {
+            (start, end, from.x, to.x, -1.0)
+        } else if start > end {
+            (end, start, to.x, from.x, 1.0)
+        } else {
+            return;
+        };
+        self.lines.push(StripLine {
+            top,
+            bottom,
+            from: upper,
+            to: lower,
+            slope: (lower - upper) / (bottom - top),
+            side,
+        });
+    }
+
+    /// Ends the outline.
+    pub(super) fn end(&mut self) {
+        self.lines.sort_unstable_by(|a, b| a.top.total_cmp(&b.top));
+    }
+
+    /// Puts the sums of the steps that a strip covers left of each cell into `sums`, and into `crossed` whether a
+    /// block is not covered alike, or not as in the strip before. Strips are asked for from top to bottom.
+    #[inline(always)]
+    pub(super) fn sum<S: Simd>(
+        &mut self,
+        simd: S,
+        strip: i64,
+        sums: &mut [f32],
+        crossed: &mut [bool],
+    ) {
+        let strip = strip as f64;
+        while let Some(line) = self.lines.get(self.reached).filter(|l| l.top < strip + 1.0) {
+            if line.bottom > strip {
+                self.active.push(self.reached as u32);
+            }
+            self.reached += 1;
+        }
+        let lines = &self.lines;
+        self.active
+            .retain(|&index| lines[index as usize].bottom > strip);
+        crossed.fill(false);
+        let mut cells = Cells {
+            deltas: &mut self.deltas,
+            crossed,
+            cover: 0,
+        };
+        for &index in &self.active {
+            let line = &self.lines[index as usize];
+            let (top, bottom) = (line.top.max(strip), line.bottom.min(strip + 1.0));
+            let (least, most) = (line.from.min(line.to), line.from.max(line.to));
+            let at =
+                |y: f64| (line.from + (y - line.top) * line.slope).clamp(least, most) - self.left;
+            cells.add(at(top), at(bottom), (bottom - top) * self.full * line.side);
+        }
+        let mut cover = cells.cover;
+        let lanes = f32x16::from_fn(
+            simd,
+            #[inline(always)]
+            |lane| lane as f32,
+        );
+        let mut sum = 0;
+        for (((sums, deltas), crossed), before) in sums
+            .as_chunks_mut::<BLOCK>()
+            .0
+            .iter_mut()
+            .zip(self.deltas.as_chunks_mut::<BLOCK>().0)
+            .zip(crossed)
+            .zip(&mut self.before)
+        {
+            if *crossed {
+                for (to, delta) in sums.iter_mut().zip(deltas) {
+                    *to = sum as f32;
+                    cover += core::mem::take(delta);
+                    sum += cover;
+                }
+            } else {
+                let ramp = lanes * cover as f32 + sum as f32;
+                ramp.store_slice(sums);
+                sum += cover * BLOCK as i32;
+                *crossed = *before != cover;
+            }
+            *before = cover;
+        }
+        if let Some(last) = sums.last_mut() {
+            *last = sum as f32;
+        }
+        if let Some(last) = self.deltas.last_mut() {
+            *last = 0;
+        }
+    }
+}
+
+/// The cells of one strip.
+struct Cells<'a> {
+    deltas: &'a mut [i32],
+    crossed: &'a mut [bool],
+    /// What covers the first cell from its left.
+    cover: i32,
+}
+
+impl Cells<'_> {
+    /// Adds a line's part from x to x within the strip, which has so many steps right of it.
+    #[inline(always)]
+    fn add(&mut self, from: f64, to: f64, steps: f64) {
+        let (left, right) = (from.min(to), from.max(to));
+        let end = (self.deltas.len() - 1) as f64;
+        if right <= 0.0 {
+            self.cover += steps as i32;
+            return;
+        }
+        if left >= end {
+            return;
+        }
+        let (first, last) = (left.max(0.0) as usize, right.min(end - 1.0) as usize);
+        for crossed in
+            &mut self.crossed[first / BLOCK..=(last + 1).min(self.deltas.len() - 2) / BLOCK]
+        {
+            *crossed = true;
+        }
+        if first == last && left >= 0.0 && right < end {
+            self.put(first, steps as i32, (left + right) / 2.0 - first as f64);
+            return;
+        }
+        let per_cell = steps / (right - left);
+        let passed = |x: f64| ((x - left) * per_cell).round() as i32;
+        let mut before = if left < 0.0 { passed(0.0) } else { 0 };
+        self.cover += before;
+        let mut x = left.max(0.0);
+        for cell in first..=last {
+            let next = right.min((cell + 1) as f64);
+            let after = if next == right {
+                steps as i32
+            } else {
+                passed(next)
+            };
+            self.put(cell, after - before, (x + next) / 2.0 - cell as f64);
+            (before, x) = (after, next);
+        }
+    }
+
+    /// Adds steps right of a place in a cell, 0 to 1.
+    #[inline(always)]
+    fn put(&mut self, cell: usize, steps: i32, place: f64) {
+        let within = (f64::from(steps) * (1.0 - place)).round() as i32;
+        self.deltas[cell] += within;
+        self.deltas[cell + 1] += steps - within;
+    }
+}
