@@ -115,9 +115,6 @@ fn on_pixels(shadow: &Shadow, levels: f64, per_unit: f64) -> (Method, &'static s
 /// Tolerances below this, in levels, are kept by the closed form alone.
 const FINEST: f64 = 0.5;
 
-/// A lattice of less than this many pixels from knot to knot spares too little.
-const COARSEST_PITCH: f64 = 1.5;
-
 /// From this penumbra radius on, in pixels, interpolating costs less than adding up corners.
 const WIDE: f64 = 64.0;
 
