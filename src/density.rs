@@ -2,7 +2,9 @@
 
 mod area;
 pub(crate) mod blend;
+mod chords;
 pub(crate) mod circle;
+mod cubic;
 pub(crate) mod direct;
 pub(crate) mod exact;
 mod field;

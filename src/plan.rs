@@ -90,33 +90,18 @@ fn on_pixels(shadow: &Shadow, levels: f64, per_unit: f64) -> (Method, &'static s
             )
         };
     };
-    let size = (rounded.max - rounded.min) * per_unit;
-    let roundest = rounded.radii.into_iter().fold(0.0, f64::max) * per_unit;
     if rounded.circle().is_some() {
         (Method::NinePatch, "a circle: one profile along its radius")
-    } else if few_steps && size.min_element() < radius && radius > WIDE {
-        (
-            Method::Grid,
-            "no umbra and a wide penumbra: few points are enough",
-        )
-    } else if roundest <= nine_patch::ROUNDEST * radius {
-        (
-            Method::NinePatch,
-            "a rounded rectangle: its columns and corners are tables",
-        )
     } else {
         (
-            Method::Direct,
-            "round corners beside a narrow penumbra: their pixels cost less than a table",
+            Method::NinePatch,
+            "a rounded rectangle: its chords are closed form in its sides",
         )
     }
 }
 
 /// Tolerances below this, in levels, are kept by the closed form alone.
 const FINEST: f64 = 0.5;
-
-/// From this penumbra radius on, in pixels, interpolating costs less than adding up corners.
-const WIDE: f64 = 64.0;
 
 impl fmt::Display for Method {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

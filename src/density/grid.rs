@@ -21,10 +21,11 @@ use fearless_simd::{Simd, SimdBase, f32x16};
 
 use glam::DVec2;
 
-use self::disc::{Disc, Height};
+use self::disc::{Disc, reach};
 use self::strips::{BLOCK, Strips};
+use super::chords::{GROUP, Height};
+use super::cubic;
 use super::frame::Frame;
-use super::nine_patch::cubic_weights;
 use super::rows::{self, Lattice, Points, Window};
 use super::{PixelOptions, Sink, seen_columns};
 use crate::grid::Grid;
@@ -34,17 +35,6 @@ use crate::scratch::Scratch;
 /// Rows of the lattice that are kept: the four that a pixel is interpolated from, and two more on both sides to foretell
 /// them from.
 const RING: i64 = 8;
-
-/// The rows a penumbra radius for a tolerance of one level.
-const STEPS: f64 = 12.0;
-
-/// The rows a penumbra radius that keep the penumbra's ends within a tolerance: their error falls with the power of 1.5.
-pub(crate) fn steps(levels: f64) -> f64 {
-    STEPS * libm::pow(1.0 / levels, if levels < 1.0 { 1.0 / 1.5 } else { 0.5 })
-}
-
-/// Strips from row to row.
-const STRIPS: i64 = 3;
 
 /// How far a row may be from what its neighbours at twice the distance foretell, over the tolerance. At the penumbra's
 /// ends that is 2.8 times the error between rows, at the tip of a cone twice.
@@ -102,12 +92,12 @@ struct Row {
 
 /// Pixels from one of the lattice's strips to the next.
 fn strip_height(radius: f64, levels: f64) -> f64 {
-    radius / steps(levels) / STRIPS as f64
+    radius / cubic::steps(levels) / GROUP as f64
 }
 
 /// The steps that a strip's height is cut into so that sums along so many cells are exact, and those of a disc.
 fn full(radius: f64, height: f64, cells: f64) -> f64 {
-    let most = (2.0 * STRIPS as f64 * cells).max(4.0 * radius * radius / height);
+    let most = (2.0 * GROUP as f64 * cells).max(4.0 * radius * radius / height);
     libm::exp2(libm::log2(EXACT / most).floor()).min(FULL[0])
 }
 
@@ -155,7 +145,7 @@ pub(crate) fn fill<S: Simd>(
             .map(move |edge| edge.mapped(frame.scale / unit, |p| frame.place(p) / unit))
     };
     let levels = options.tolerance.as_levels();
-    let (pitch, height) = (radius / steps(levels), strip_height(radius, levels));
+    let (pitch, height) = (radius / cubic::steps(levels), strip_height(radius, levels));
     let Scratch {
         rows: pixel_rows,
         grid: kept,
@@ -163,7 +153,7 @@ pub(crate) fn fill<S: Simd>(
         ..
     } = scratch;
     let full = full(radius, height, cells(frame.extent.x - 2.0 * radius, radius));
-    kept.disc.set(radius, height, STRIPS, full);
+    kept.disc.set(radius, height, full);
     let margin = (kept.disc.reach() + 2).div_ceil(BLOCK);
     // Whole blocks of the shadow, whatever part of it the grid shows.
     let first = columns.start - columns.start % BLOCK as i64;
@@ -210,7 +200,7 @@ pub(crate) fn fill<S: Simd>(
         }
         let woven = Woven {
             knot,
-            weights: cubic_weights(place - knot as f64),
+            weights: cubic::weights(place - knot as f64),
             number,
             origin,
         };
@@ -261,8 +251,8 @@ impl Sums {
         self.blocks = blocks;
         self.length = blocks * BLOCK + 1;
         let kept = |rows: i64| (rows as u64).next_power_of_two() as i64 - 1;
-        self.strips = kept(2 * disc.half + 2 * STRIPS);
-        self.groups = kept(2 * disc.half / STRIPS + 4);
+        self.strips = kept(2 * disc.chords.half + 2 * GROUP);
+        self.groups = kept(2 * disc.chords.half / GROUP + 4);
         let rows = (self.strips + 1) + 2 * (self.groups + 1);
         self.sums.resize(rows as usize * self.length, 0.0);
         let words = self.words();
@@ -300,8 +290,8 @@ impl Sums {
         let bits = self.bits(group);
         let crossed = &mut self.crossed[bits];
         crossed.fill(0);
-        let first = group * STRIPS;
-        for strip in first..first + STRIPS {
+        let first = group * GROUP;
+        for strip in first..first + GROUP {
             let at = (strip & self.strips) as usize * self.length;
             strips.sum(
                 simd,
@@ -314,7 +304,7 @@ impl Sums {
             }
         }
         self.copy(self.strip(first), self.group(group));
-        for strip in first + 1..first + STRIPS {
+        for strip in first + 1..first + GROUP {
             self.add(self.strip(strip), self.group(group));
         }
         self.copy(self.group(group - 1), self.pair(group - 1));
@@ -341,13 +331,13 @@ impl Sums {
         self.mixed.resize(self.words(), 0);
         // From the widest of the disc's chords to the narrowest, all reach farther by one block at a time.
         let mut reached = disc.reach() / BLOCK + 1;
-        for chord in disc.chords.iter().skip(1).step_by(2) {
-            let farthest = chord.whole / BLOCK + 1;
+        for chord in disc.chords.all.iter().skip(1).step_by(2) {
+            let farthest = reach(chord).0 / BLOCK + 1;
             while reached > farthest {
                 widen(&mut self.mixed);
                 reached -= 1;
             }
-            let first = chord.strip / STRIPS;
+            let first = chord.strip / GROUP;
             let groups = first..first + if chord.height == Height::Pair { 2 } else { 1 };
             for group in groups {
                 for group in [row + group, row - group - 1] {
@@ -393,7 +383,7 @@ struct Weaver<'a> {
 impl Weaver<'_> {
     /// Groups of strips from the middle of a disc to its end.
     fn groups(&self) -> i64 {
-        (self.kept.disc.half + STRIPS - 1) / STRIPS
+        (self.kept.disc.chords.half + GROUP - 1) / GROUP
     }
 
     /// Computes the lattice's rows from `first` to `last`.
@@ -424,9 +414,9 @@ impl Weaver<'_> {
         }
         sums.find_mixed(disc, row);
         disc.lay(|chord| {
-            let group = || row + chord.strip.div_euclid(STRIPS);
+            let group = || row + chord.strip.div_euclid(GROUP);
             match chord.height {
-                Height::Strip => sums.strip(row * STRIPS + chord.strip),
+                Height::Strip => sums.strip(row * GROUP + chord.strip),
                 Height::Group => sums.group(group()),
                 Height::Pair => sums.pair(group()),
             }
@@ -436,7 +426,7 @@ impl Weaver<'_> {
         let blocks = sums.blocks - 2 * self.margin;
         woven.densities.resize(blocks * BLOCK, 0.0);
         let middle = sums.group(row);
-        let cell = self.full * STRIPS as f32;
+        let cell = self.full * GROUP as f32;
         let is_mixed = |block: usize| {
             let number = block + self.margin;
             block < blocks && sums.mixed[number / 64] >> (number % 64) & 1 == 1

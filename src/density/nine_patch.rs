@@ -1,140 +1,201 @@
-//! `nine_patch`: rounded rectangles by columns and corners.
+//! `nine_patch`: rounded rectangles by their sides.
 //!
-//! Areas add up, so a rounded rectangle's density is that of the sharp one less those of its four spandrels, what is
-//! left between a sharp corner and its arc. The sharp one is closed form with one table along the columns: no root a pixel.
-//! A spandrel's density is one function of the corner's radius over the penumbra's, tabled over the few points that it
-//! needs and interpolated by cubics (Catmull & Rom 1974) at all four corners. Columns between the corners have one
-//! density a row, rows between them are all alike.
+//! What a chord of the disc covers of a rounded rectangle is closed form in the x of the two sides at its height. Those are
+//! found once for every strip of the rectangle, whatever the corners' radii; a pixel takes a few operations a chord. Columns
+//! between the corners have one density a row, rows between them are all alike. Where the penumbra is wide, rows are computed
+//! some pixels apart, with cubics between.
 //!
-//! Error: the spandrels' interpolation, kept within the tolerance by the table's spacing; below 0.01 level elsewhere.
+//! Error: that of the chords and of the cubics, kept within the tolerance by their number.
 
-use core::f64::consts::{FRAC_1_PI, FRAC_PI_2};
+mod sides;
+
 use core::ops::Range;
 
-use fearless_simd::{Simd, SimdBase, SimdFloat, f32x8};
-use glam::DVec2;
+use fearless_simd::{Simd, SimdBase, f32x16};
 
+use self::sides::{Corners, Node, Strips};
+use super::chords::{Chords, GROUP, Height};
 use super::frame::Frame;
 use super::rounded::Rounded;
-use super::rows::{LANES, Lattice, Points, Rows, Window, half_disc, half_disc_x8};
-use super::{Each, PixelOptions, Sink, seen_columns};
+use super::rows::half_disc;
+use super::{PixelOptions, Sink, cubic, seen_columns};
 use crate::grid::Grid;
-use crate::outline::{Arc, Edge, Line};
 use crate::scratch::Scratch;
 use crate::shadow::Shadow;
-
-/// Corners rounder than this, over the penumbra radius, need more table than they spare.
-pub(crate) const ROUNDEST: f64 = 2.0;
-
-/// Corners rounder than this are no longer drawn by this method.
-const ROUNDEST_EVER: f64 = 16.0;
 
 /// Circles larger than this, over the penumbra radius, are told from each other by double precision only.
 const LARGEST_CIRCLE: f64 = 1024.0;
 
-/// Rectangles with more columns, in pixels, are no longer drawn by this method.
-const WIDEST: f64 = 32_768.0;
+/// Single precision tells a pixel's columns and rows apart from its neighbours' in rectangles up to this size, in pixels.
+const LARGEST: f64 = 32_768.0;
 
 /// The rounded rectangle or circle that a shadow is, if this method can draw it on so many pixels a scene unit.
 pub(crate) fn suited(shadow: &Shadow, per_unit: f64) -> Option<Rounded> {
     let rounded = shadow.rounded()?;
-    let roundest = rounded.radii.into_iter().fold(0.0, f64::max) / shadow.radius();
-    let width = (rounded.max.x - rounded.min.x + 2.0 * shadow.radius()) * per_unit;
+    let size = (rounded.max - rounded.min).max_element() + 2.0 * shadow.radius();
     let drawn = match rounded.circle() {
-        Some(_) => roundest <= LARGEST_CIRCLE,
-        None => roundest <= ROUNDEST_EVER && width <= WIDEST,
+        Some(radius) => radius <= LARGEST_CIRCLE * shadow.radius(),
+        None => size * per_unit <= LARGEST,
     };
     (drawn && shadow.radius() * per_unit >= 3.0).then_some(rounded)
 }
 
-/// Spandrel densities over square steps of 1/`steps`, from one step before where they begin.
-#[derive(Debug, Default)]
-struct Corner {
-    ratio: f32,
-    steps: u32,
-    side: usize,
-    densities: Vec<f32>,
-}
-
-/// What this method leaves from drawing to drawing: the last corners' tables, and memory.
+/// What this method leaves from drawing to drawing: memory.
 #[derive(Debug, Default)]
 pub(crate) struct NinePatchScratch {
-    corners: Vec<Corner>,
-    /// The table to be given up next.
-    oldest: usize,
-    rows: Rows,
+    chords: Chords,
+    disc: Disc,
+    /// Single strips, and groups that begin with the first strip, the second and the third.
+    strips: [Strips; 1 + GROUP as usize],
     zones: [Zone; 2],
 }
 
-/// How many corners' tables are kept.
-const KEPT: usize = 8;
+/// The disc's chords from above to below: single strips, groups of strips, and single ones again.
+#[derive(Debug, Default)]
+struct Disc {
+    /// Strips from its middle to its end, and groups from its middle to where single ones follow.
+    half: i64,
+    groups: i64,
+    /// Half of each chord's width, in pixels.
+    upper: Vec<f32>,
+    middle: Vec<f32>,
+    lower: Vec<f32>,
+    /// Its area, in strips and pixels.
+    total: f32,
+    /// Strips from the top and from the bottom of the rectangle in which a side is not nearly upright.
+    steep: [i64; 2],
+}
 
 /// Columns on which a row's density changes.
 #[derive(Debug, Default)]
 struct Zone {
     start: i64,
     end: i64,
-    /// The upright sides that the zone's discs can meet, and the corners.
-    sides: List<Side>,
-    spandrels: List<Spandrel>,
+    /// Whether its discs may meet the left side, and the right one.
+    met: [bool; 2],
+    /// Where the sides are without corners, counted from the first column.
+    sides: [f32; 2],
+    /// The last rows that were computed, and which they are.
+    rows: [Vec<f32>; RING],
+    which: [Option<i64>; RING],
+    /// The pixels' densities where rows are apart.
     values: Vec<f32>,
-    /// Whether `values` hold the row that all rows between the corners are alike to.
-    still: bool,
 }
 
-/// Items whose memory is used again.
-#[derive(Debug, Default)]
-struct List<T> {
-    items: Vec<T>,
-    count: usize,
+/// Rows that are kept: the four that a pixel is interpolated from.
+const RING: usize = 4;
+
+/// Columns that are taken at once.
+const BLOCK: usize = 16;
+
+/// Where rows of densities are computed.
+#[derive(Debug, Clone, Copy)]
+struct Lattice {
+    /// The y of row 0, and pixels from one to the next.
+    start: f64,
+    pitch: f64,
+    /// Strips from one to the next.
+    strips: i64,
+    /// Rows after `straight` up to so many more are like it: they are left out of the strips.
+    straight: i64,
+    alike: i64,
+    /// The first strip.
+    first: i64,
 }
 
-impl<T: Default> List<T> {
-    fn push(&mut self) -> &mut T {
-        if self.count == self.items.len() {
-            self.items.push(T::default());
+impl Lattice {
+    /// For a penumbra radius in pixels and a tolerance in levels; `phase` is where in a pixel of the frame a pixel begins.
+    fn new(shape: &Rounded, radius: f64, levels: f64, phase: f64) -> Self {
+        let pitch = radius / steps(shape, radius, levels);
+        let mut lattice = if pitch > NEAREST {
+            Self {
+                start: -phase - 0.5,
+                pitch,
+                strips: GROUP,
+                straight: 0,
+                alike: 0,
+                first: 0,
+            }
+        } else {
+            // A row for each row of pixels.
+            Self {
+                start: 0.0,
+                pitch: 1.0,
+                strips: (ALIGNED / pitch).round().max(1.0) as i64,
+                straight: 0,
+                alike: 0,
+                first: 0,
+            }
+        };
+        let [tl, tr, br, bl] = shape.radii;
+        let reach = radius + 2.0 * lattice.height();
+        let first = lattice.row_at(shape.min.y + tl.max(tr) + reach).ceil() as i64;
+        let last = lattice.row_at(shape.max.y - bl.max(br) - reach).floor() as i64;
+        (lattice.straight, lattice.alike) = (first, (last - first).max(0));
+        let top = (shape.min.y - lattice.start) / lattice.height();
+        // Chords that begin above the rectangle may end within it.
+        lattice.first = top.floor() as i64 - GROUP;
+        lattice
+    }
+
+    /// The height of a strip, in pixels.
+    fn height(&self) -> f64 {
+        self.pitch / self.strips as f64
+    }
+
+    /// Where among the rows a y is.
+    fn row_at(&self, y: f64) -> f64 {
+        (y - self.start) / self.pitch
+    }
+
+    /// A row of which another is a copy, or itself, among those left.
+    fn folded(&self, row: i64) -> i64 {
+        if row <= self.straight {
+            row
+        } else {
+            (row - self.alike).max(self.straight)
         }
-        self.count += 1;
-        &mut self.items[self.count - 1]
-    }
-
-    fn all(&self) -> &[T] {
-        &self.items[..self.count]
     }
 }
 
-/// An upright side as each column sees it: how far away, half of the chord that it cuts from the disc, and `half_disc` of
-/// that.
-#[derive(Debug, Default)]
-struct Side {
-    /// 1 for the side of largest x, -1 for the other.
-    sign: f32,
-    distances: Vec<f32>,
-    chords: Vec<f32>,
-    halves: Vec<f32>,
+/// Strips from one row to the next where each row of pixels is one, over the rows that a cubic between them would need:
+/// without cubics fewer strips are enough.
+const ALIGNED: f64 = 2.4;
+
+/// Rows nearer to each other than this, in pixels, are not worth interpolating between.
+const NEAREST: f64 = 1.25;
+
+/// The rows a penumbra radius for a tolerance. Two of the penumbra's ends may meet on the middle line; and where a disc
+/// nearly fills its corner's circle, the density has a tip at that circle's centre that cubics between few rows do not
+/// hold, the less the more such centres are in one place.
+fn steps(shape: &Rounded, radius: f64, levels: f64) -> f64 {
+    let steps = cubic::steps(levels);
+    let near = |distance: f64| distance.abs() < 4.0 * radius / steps;
+    let size = shape.max - shape.min;
+    let ends = if near(size.y - 2.0 * radius) {
+        2.0
+    } else {
+        1.0
+    };
+    let [tl, tr, br, bl] = shape.radii;
+    let mut tip = 0.0;
+    if shape
+        .radii
+        .iter()
+        .any(|corner| (0.8..1.35).contains(&(corner / radius)))
+    {
+        let across = near(size.x - tl - tr) || near(size.x - bl - br);
+        let down = near(size.y - tl - bl) || near(size.y - tr - br);
+        tip = TIP / levels * [1.0, 2.0, 4.0][usize::from(across) + usize::from(down)];
+    }
+    cubic::steps(levels / ends).max(tip)
 }
 
-/// A corner's spandrel, interpolated along its table's rows to the zone's columns.
-#[derive(Debug, Default)]
-struct Spandrel {
-    /// Where the corner is, and 1 where the rectangle goes on to larger y, else -1.
-    y: f64,
-    inwards: f64,
-    steps: f64,
-    rows: usize,
-    /// Where each column's four neighbours begin in a row of the table, and their weights.
-    places: Vec<(u32, [f32; 4])>,
-    densities: Vec<f32>,
-}
+/// Where a side gains more x in a group of strips, in penumbra radii, it is looked up twice in each.
+const STEEP: f64 = 0.17;
 
-/// A row as the sharp rectangle's upper and lower sides cut its discs.
-struct Row {
-    y: f64,
-    radius: f64,
-    ends: [f32; 2],
-    halves: [f32; 2],
-    still: bool,
-}
+/// The error at a tip, in levels, times the rows a penumbra radius.
+const TIP: f64 = 18.0;
 
 /// Gives `sink` the density of every pixel of the grid that is in the shadow of a rounded rectangle and not hidden.
 #[inline(always)]
@@ -159,379 +220,334 @@ pub(crate) fn fill<S: Simd>(
         return;
     }
     let (kept, wanted) = (&mut scratch.nine_patch, &mut scratch.wanted);
-    let zones = lay_out(simd, &shape, radius, options.tolerance.as_levels(), kept);
-    let zones = &mut kept.zones[..zones];
-    let middle = match zones {
-        [left, right] => left.end..right.start,
-        _ => 0..0,
+    let lattice = Lattice::new(&shape, radius, options.tolerance.as_levels(), frame.phase.y);
+    kept.begin(simd, &shape, radius, &lattice);
+    let zones = kept.lay_out(&shape, radius);
+    let middle = if zones == 2 {
+        kept.zones[0].end..kept.zones[1].start
+    } else {
+        0..0
     };
     let origin = frame.first[0];
-    let deepest = shape.radii.into_iter().fold(0.0, f64::max) + radius;
     for line in lines {
         let y = line as f64;
-        let ends = [shape.min.y - y, shape.max.y - y].map(|v| (v / radius).clamp(-1.0, 1.0) as f32);
-        let row = Row {
-            y,
-            radius,
-            ends,
-            halves: ends.map(half_disc),
-            still: y > shape.min.y + deepest && y < shape.max.y - deepest,
-        };
-        let between = 2.0 * (row.halves[1] - row.halves[0]);
+        let [above, below] = [shape.min.y - y, shape.max.y - y]
+            .map(|end| half_disc((end / radius).clamp(-1.0, 1.0) as f32));
+        let between = 2.0 * (below - above);
         if between <= 0.0 {
             continue;
         }
         let number = (line - frame.first[1]) as u32;
         seen_columns(options.hidden, number, &frame, &columns, wanted);
+        let place = lattice.row_at(y);
         for wanted in wanted.iter() {
             let column = |x: i64| (x - origin) as u32;
             let (start, end) = (wanted.start.max(middle.start), wanted.end.min(middle.end));
             if start < end {
                 sink.constant(number, column(start)..column(end), between);
             }
-            for zone in &mut *zones {
-                let (start, end) = (wanted.start.max(zone.start), wanted.end.min(zone.end));
+            for zone in 0..zones {
+                let (first, last) = (kept.zones[zone].start, kept.zones[zone].end);
+                let (start, end) = (wanted.start.max(first), wanted.end.min(last));
                 if start < end {
-                    let part = (start - zone.start) as usize..(end - zone.start) as usize;
-                    zone.compute(simd, &part, &row);
-                    sink.values(number, column(start), &zone.values[part]);
+                    let part = (start - first) as usize..(end - first) as usize;
+                    let densities = kept.row(simd, zone, place, &lattice, part);
+                    sink.values(number, column(start), densities);
                 }
             }
         }
     }
 }
 
-/// Prepares the zones, two or one where their discs meet sides or corners of both; their number.
-#[inline(always)]
-fn lay_out<S: Simd>(
-    simd: S,
-    shape: &Rounded,
-    radius: f64,
-    tolerance: f64,
-    kept: &mut NinePatchScratch,
-) -> usize {
-    let [tl, tr, br, bl] = shape.radii;
-    let left_end = shape.min.x + radius + tl.max(bl);
-    let right_start = shape.max.x - radius - tr.max(br);
-    let (first, last) = (shape.min.x - radius, shape.max.x + radius);
-    let apart = left_end + 2.0 < right_start;
-    let ranges = if apart {
-        [(first, left_end), (right_start, last)]
-    } else {
-        [(first, last); 2]
-    };
-    let across = if apart { 1.0 } else { 2.0 };
-    let above = shape.min.y + tl.max(tr);
-    let below = shape.max.y - bl.max(br);
-    let down = if above + 2.0 * radius < below {
-        1.0
-    } else {
-        2.0
-    };
-    // The errors of corners that one pixel sees add up.
-    let share = SHARE * tolerance / (across * down);
-
-    let zones = if apart { 2 } else { 1 };
-    for (index, range) in ranges.iter().enumerate().take(zones) {
-        let zone = &mut kept.zones[index];
-        zone.start = range.0.ceil() as i64;
-        zone.end = range.1.floor() as i64 + 1;
-        zone.still = false;
-        zone.sides.count = 0;
-        zone.spandrels.count = 0;
-        let width = ((zone.end - zone.start) as usize).next_multiple_of(LANES);
-        zone.values.clear();
-        zone.values.resize(width, 0.0);
-        if !apart || index == 0 {
-            zone.push_side(simd, -1.0, shape.min.x, radius);
-        }
-        if !apart || index == 1 {
-            zone.push_side(simd, 1.0, shape.max.x, radius);
-        }
-    }
-    for (index, corner_radius) in shape.radii.into_iter().enumerate() {
-        if corner_radius == 0.0 {
-            continue;
-        }
-        let (right, bottom) = (index == 1 || index == 2, index >= 2);
-        let ratio = (corner_radius / radius) as f32;
-        let steps = steps(f64::from(ratio), share, tolerance);
-        let table = corner(
-            simd,
-            ratio,
-            steps,
-            &mut kept.corners,
-            &mut kept.oldest,
-            &mut kept.rows,
-        );
-        let x = if right { shape.max.x } else { shape.min.x };
-        let spandrel = Placed {
-            x,
-            y: if bottom { shape.max.y } else { shape.min.y },
-            inwards: [
-                if right { -1.0 } else { 1.0 },
-                if bottom { -1.0 } else { 1.0 },
-            ],
-            radius,
+impl NinePatchScratch {
+    /// Prepares chords and strips.
+    #[inline(always)]
+    fn begin<S: Simd>(&mut self, simd: S, shape: &Rounded, radius: f64, lattice: &Lattice) {
+        let height = lattice.height();
+        // In a strip a side is taken to be upright: a round one is not, in higher ones.
+        self.chords.set(radius, height, Height::Group);
+        self.disc.set(&self.chords);
+        let [tl, tr, br, bl] = shape.radii;
+        let from_first = |y: f64| (y - lattice.start - lattice.first as f64 * height) as f32;
+        let bottom = shape.max.y - lattice.alike as f64 * lattice.pitch;
+        let sides = [[tl, bl], [tr, br]].map(|radii| Corners {
+            top: from_first(shape.min.y),
+            bottom: from_first(bottom),
+            radii: radii.map(|radius| radius as f32),
+        });
+        // Where a circle's side gains so many pixels a strip.
+        let slope = STEEP * radius / (height * GROUP as f64);
+        let steep = |corner: f64| {
+            let depth = corner * (1.0 - slope / (1.0 + slope * slope).sqrt());
+            (depth / height) as i64 + GROUP + 2
         };
-        let zone = usize::from(right && apart);
-        kept.zones[zone].push_spandrel(&kept.corners[table], &spandrel);
-    }
-    zones
-}
-
-/// A corner and the directions in which its rectangle goes on.
-struct Placed {
-    x: f64,
-    y: f64,
-    inwards: [f64; 2],
-    radius: f64,
-}
-
-/// The share of the tolerance that interpolation may take.
-const SHARE: f64 = 0.75;
-
-/// The steps a penumbra radius that keep a spandrel's interpolation within `levels`: measured over many ratios, the largest
-/// error is below min(ratio, 1.3) levels at 10 steps, and falls with their number to the power of 1.6. Where a disc nearly
-/// fills its corner's circle, the density has a tip at that circle's centre: there the error is up to 13.5 levels over the
-/// steps, at this corner alone.
-fn steps(ratio: f64, levels: f64, tolerance: f64) -> u32 {
-    let smooth = 10.0 * libm::pow(ratio.min(1.3) / levels, 1.0 / 1.6);
-    let tip = if (0.8..1.35).contains(&ratio) {
-        15.0 / tolerance
-    } else {
-        0.0
-    };
-    (smooth.max(tip).ceil() as u32).max(3)
-}
-
-/// The index of a corner's table, made if it is not among those kept.
-#[inline(always)]
-fn corner<S: Simd>(
-    simd: S,
-    ratio: f32,
-    steps: u32,
-    corners: &mut Vec<Corner>,
-    oldest: &mut usize,
-    rows: &mut Rows,
-) -> usize {
-    let found = corners
-        .iter()
-        .position(|corner| corner.ratio == ratio && corner.steps == steps);
-    if let Some(index) = found {
-        return index;
-    }
-    let index = if corners.len() < KEPT {
-        corners.push(Corner::default());
-        corners.len() - 1
-    } else {
-        *oldest = (*oldest + 1) % KEPT;
-        *oldest
-    };
-    tabulate(simd, ratio, steps, &mut corners[index], rows);
-    index
-}
-
-#[inline(always)]
-fn tabulate<S: Simd>(simd: S, ratio: f32, steps: u32, corner: &mut Corner, rows: &mut Rows) {
-    let (reach, density) = (f64::from(ratio), f64::from(steps));
-    let side = ((reach + 2.0) * density).ceil() as usize + 4;
-    corner.ratio = ratio;
-    corner.steps = steps;
-    corner.side = side;
-    corner.densities.clear();
-    corner.densities.resize(side * side, 0.0);
-    rows.load(spandrel(reach).into_iter(), Window::Disc);
-    let lattice = Lattice {
-        window: Window::Disc,
-        start: -1.0 - 1.0 / density,
-        pitch: 1.0 / density,
-        density,
-    };
-    let columns = 0..side as i64;
-    let mut sink = Each {
-        pixels: &mut corner.densities,
-        stride: side,
-        put: |to: &mut f32, density| *to = density,
-    };
-    for row in 0..side {
-        let y = lattice.start + row as f64 * lattice.pitch;
-        rows.go_to(y, columns.clone(), &lattice, &Points::CENTER);
-        rows.clear();
-        rows.compute(simd, columns.clone(), &lattice, &Points::CENTER);
-        rows.give(row as u32, columns.clone(), 0, &mut sink);
-    }
-}
-
-/// What lies between a corner at the origin and the arc in its first quadrant.
-fn spandrel(radius: f64) -> [Edge; 3] {
-    let (across, down) = (DVec2::new(radius, 0.0), DVec2::new(0.0, radius));
-    let line = |from, to| Edge::Line(Line { from, to });
-    [
-        line(DVec2::ZERO, across),
-        Edge::Arc(Arc {
-            center: DVec2::splat(radius),
-            radius,
-            start: -FRAC_PI_2,
-            sweep: -FRAC_PI_2,
-            from: across,
-            to: down,
-        }),
-        line(down, DVec2::ZERO),
-    ]
-}
-
-/// The weights of four neighbours, for a point `share` of the way from the second to the third (Catmull & Rom 1974).
-pub(super) fn cubic_weights(share: f64) -> [f32; 4] {
-    let (t, u) = (share, 1.0 - share);
-    [
-        -0.5 * t * u * u,
-        1.0 - 2.5 * t * t + 1.5 * t * t * t,
-        1.0 - 2.5 * u * u + 1.5 * u * u * u,
-        -0.5 * u * t * t,
-    ]
-    .map(|weight| weight as f32)
-}
-
-/// The sum of the first four densities by their weights.
-#[inline(always)]
-fn interpolate(near: &[f32], weights: &[f32; 4]) -> f32 {
-    let Some(near) = near.first_chunk::<4>() else {
-        return 0.0;
-    };
-    let mut parts = [0.0; 4];
-    for index in 0..4 {
-        parts[index] = near[index] * weights[index];
-    }
-    (parts[0] + parts[1]) + (parts[2] + parts[3])
-}
-
-impl Zone {
-    #[inline(always)]
-    fn push_side<S: Simd>(&mut self, simd: S, sign: f32, x: f64, radius: f64) {
-        let (start, width) = (self.start, self.values.len());
-        let side = self.sides.push();
-        side.sign = sign;
-        for list in [&mut side.distances, &mut side.chords, &mut side.halves] {
-            list.clear();
-            list.resize(width, 0.0);
-        }
-        let one = f32x8::splat(simd, 1.0);
-        for index in 0..width {
-            side.distances[index] = ((x - (start + index as i64) as f64) / radius) as f32;
-        }
-        for at in (0..width).step_by(LANES) {
-            let part = at..at + LANES;
-            let distance = f32x8::from_slice(simd, &side.distances[part.clone()]);
-            let chord = (one - distance * distance)
-                .max(f32x8::splat(simd, 0.0))
-                .sqrt();
-            chord.store_slice(&mut side.chords[part.clone()]);
-            half_disc_x8(simd, chord).store_slice(&mut side.halves[part]);
+        let end = ((bottom - shape.min.y) / height) as i64;
+        self.disc.steep = [steep(tl.max(tr)), end - steep(bl.max(br))];
+        let count = end as usize + GROUP as usize + 2;
+        let [singles, groups @ ..] = &mut self.strips;
+        singles.set(simd, count, [0, 1], height as f32, &sides);
+        for (first, groups) in groups.iter_mut().enumerate() {
+            let count = count / GROUP as usize + 1;
+            groups.set(simd, count, [first, GROUP as usize], height as f32, &sides);
         }
     }
 
-    fn push_spandrel(&mut self, corner: &Corner, placed: &Placed) {
-        let (start, width) = (self.start, self.values.len());
-        let steps = f64::from(corner.steps);
-        let spandrel = self.spandrels.push();
-        spandrel.y = placed.y;
-        spandrel.inwards = placed.inwards[1];
-        spandrel.steps = steps;
-        spandrel.rows = corner.side;
-        spandrel.densities.clear();
-        spandrel.densities.resize(corner.side * width, 0.0);
-        spandrel.places.clear();
-        for index in 0..width {
-            let x = (start + index as i64) as f64;
-            let depth = (x - placed.x) * placed.inwards[0] / placed.radius;
-            let place = (depth + 1.0) * steps + 1.0;
-            let reached = place >= 1.0 && place < (corner.side - 2) as f64;
-            spandrel.places.push(if reached {
-                (place as u32 - 1, cubic_weights(place.fract()))
-            } else {
-                (0, [0.0; 4])
-            });
-        }
-        let rows = spandrel.densities.chunks_exact_mut(width);
-        for (to, from) in rows.zip(corner.densities.chunks_exact(corner.side)) {
-            for (density, (first, weights)) in to.iter_mut().zip(&spandrel.places) {
-                *density = interpolate(&from[*first as usize..], weights);
-            }
-        }
-    }
-
-    /// Computes the zone's densities over columns counted from its first.
-    #[inline(always)]
-    fn compute<S: Simd>(&mut self, simd: S, columns: &Range<usize>, row: &Row) {
-        if row.still && self.still {
-            return;
-        }
-        self.still = row.still;
-        let width = self.values.len();
-        let (first, last) = if row.still {
-            (0, width)
+    /// Prepares the zones, two or one where discs meet both sides; their number.
+    fn lay_out(&mut self, shape: &Rounded, radius: f64) -> usize {
+        let [tl, tr, br, bl] = shape.radii;
+        let left_end = shape.min.x + radius + tl.max(bl);
+        let right_start = shape.max.x - radius - tr.max(br);
+        let (first, last) = (shape.min.x - radius, shape.max.x + radius);
+        let apart = left_end + 2.0 < right_start;
+        let ranges = if apart {
+            [(first, left_end), (right_start, last)]
         } else {
-            let last = columns.end.next_multiple_of(LANES);
-            (columns.start / LANES * LANES, last)
+            [(first, last); 2]
         };
-        let [above, below] = row.halves;
-        // A side that no disc of the zone meets is far right or far left of all.
-        let base = (2 - self.sides.count) as f32 * (below - above);
-        let mut near = [([0; 4], [0.0; 4], &[][..]); 4];
-        let mut count = 0;
-        for spandrel in self.spandrels.all() {
-            let place =
-                ((row.y - spandrel.y) * spandrel.inwards / row.radius + 1.0) * spandrel.steps + 1.0;
-            // The table ends in next to nothing: rows that are alike have none of it.
-            if !row.still && place >= 1.0 && place < (spandrel.rows - 2) as f64 {
-                let at = (place as usize - 1) * width;
-                let rows = [at, at + width, at + 2 * width, at + 3 * width];
-                near[count] = (rows, cubic_weights(place.fract()), &spandrel.densities[..]);
-                count += 1;
+        for (index, (zone, range)) in self.zones.iter_mut().zip(ranges).enumerate() {
+            zone.start = range.0.ceil() as i64;
+            zone.end = range.1.floor() as i64 + 1;
+            zone.met = [!apart || index == 0, !apart || index == 1];
+            zone.sides = [shape.min.x, shape.max.x].map(|x| (x - zone.start as f64) as f32);
+            zone.which = [None; RING];
+            let width = ((zone.end - zone.start) as usize).next_multiple_of(BLOCK);
+            for row in &mut zone.rows {
+                row.resize(width, 0.0);
             }
+            zone.values.resize(width, 0.0);
         }
-        let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
-        for at in (first..last).step_by(LANES) {
-            let part = at..at + LANES;
-            let mut sum = f32x8::splat(simd, base);
-            for side in self.sides.all() {
-                let distance = f32x8::from_slice(simd, &side.distances[part.clone()]);
-                let chord = f32x8::from_slice(simd, &side.chords[part.clone()]);
-                let half = f32x8::from_slice(simd, &side.halves[part.clone()]);
-                sum += upright(simd, distance, chord, half, row) * side.sign;
-            }
-            for (rows, weights, densities) in &near[..count] {
-                for (start, weight) in rows.iter().zip(weights) {
-                    let row = &densities[start + at..start + at + LANES];
-                    sum -= f32x8::from_slice(simd, row) * *weight;
-                }
-            }
-            sum.max(zero).min(one).store_slice(&mut self.values[part]);
+        if apart { 2 } else { 1 }
+    }
+
+    /// The densities of some columns of a zone, counted from its first, at a place among the lattice's rows.
+    #[inline(always)]
+    fn row<S: Simd>(
+        &mut self,
+        simd: S,
+        zone: usize,
+        place: f64,
+        lattice: &Lattice,
+        part: Range<usize>,
+    ) -> &[f32] {
+        let knot = place.floor();
+        let blocks = part.start / BLOCK..part.end.div_ceil(BLOCK);
+        if lattice.pitch == 1.0 {
+            let row = lattice.folded(knot as i64);
+            let slot = self.compute(simd, zone, row, lattice);
+            return &self.zones[zone].rows[slot][part];
         }
+        let mut slots = [0; 4];
+        for (slot, row) in slots.iter_mut().zip(knot as i64 - 1..) {
+            *slot = self.compute(simd, zone, lattice.folded(row), lattice);
+        }
+        let weights = cubic::weights(place - knot);
+        let zone = &mut self.zones[zone];
+        let [a, b, c, d] = slots.map(|slot| &zone.rows[slot]);
+        let (zero, one) = (f32x16::splat(simd, 0.0), f32x16::splat(simd, 1.0));
+        for block in blocks {
+            let columns = block * BLOCK..(block + 1) * BLOCK;
+            let a = f32x16::from_slice(simd, &a[columns.clone()]);
+            let b = f32x16::from_slice(simd, &b[columns.clone()]);
+            let c = f32x16::from_slice(simd, &c[columns.clone()]);
+            let d = f32x16::from_slice(simd, &d[columns.clone()]);
+            let sum = a * weights[0] + b * weights[1] + (c * weights[2] + d * weights[3]);
+            sum.max(zero)
+                .min(one)
+                .store_slice(&mut zone.values[columns]);
+        }
+        &zone.values[part]
+    }
+
+    /// Computes a row of the lattice, if it is not among the last; where it is.
+    #[inline(always)]
+    fn compute<S: Simd>(&mut self, simd: S, zone: usize, row: i64, lattice: &Lattice) -> usize {
+        let Self {
+            disc,
+            strips,
+            zones,
+            ..
+        } = self;
+        let zone = &mut zones[zone];
+        let slot = row.rem_euclid(RING as i64) as usize;
+        if zone.which[slot] == Some(row) {
+            return slot;
+        }
+        zone.which[slot] = Some(row);
+        let reach = Reach {
+            disc,
+            strips,
+            first: row * lattice.strips - lattice.first,
+            met: zone.met,
+            sides: zone.sides,
+        };
+        let mut at = 0;
+        let row = &mut zone.rows[slot];
+        while at < row.len() {
+            let left = row.len() - at;
+            let densities = &mut row[at..];
+            at += match left / BLOCK {
+                1 => reach.compute::<S, 1>(simd, at, densities),
+                2 => reach.compute::<S, 2>(simd, at, densities),
+                _ => reach.compute::<S, 3>(simd, at, densities),
+            };
+        }
+        slot
     }
 }
 
-/// What an upright side between the row's ends adds: as a line does, with the part inside the disc between its chord's
-/// ends and the sides beyond.
+impl Disc {
+    fn set(&mut self, chords: &Chords) {
+        self.half = chords.half;
+        for list in [&mut self.upper, &mut self.middle, &mut self.lower] {
+            list.clear();
+        }
+        let mut total = 0.0;
+        // Of each chord's two likenesses the one below.
+        for chord in chords.all.iter().skip(1).step_by(2) {
+            total += 4.0 * chord.height.strips() as f64 * chord.half_width;
+            let half_width = chord.half_width as f32;
+            match chord.height {
+                Height::Strip => self.lower.push(half_width),
+                Height::Group | Height::Pair => self.middle.push(half_width),
+            }
+        }
+        self.total = total as f32;
+        self.groups = self.middle.len() as i64;
+        self.upper.extend(self.lower.iter().rev());
+        self.middle.extend_from_within(..);
+        self.middle[..self.groups as usize].reverse();
+    }
+}
+
+/// What the discs of one row reach.
+struct Reach<'a> {
+    disc: &'a Disc,
+    strips: &'a [Strips; 1 + GROUP as usize],
+    /// The strip below the row.
+    first: i64,
+    met: [bool; 2],
+    sides: [f32; 2],
+}
+
+impl Reach<'_> {
+    /// Computes some blocks of densities from column `at` on; their columns.
+    #[inline(always)]
+    fn compute<S: Simd, const BLOCKS: usize>(
+        &self,
+        simd: S,
+        at: usize,
+        densities: &mut [f32],
+    ) -> usize {
+        let zero = f32x16::splat(simd, 0.0);
+        let mut sums = [zero; BLOCKS];
+        let (disc, first) = (self.disc, self.first);
+        let is_steep = first - disc.half < disc.steep[0] || first + disc.half > disc.steep[1];
+        for side in 0..2 {
+            if !self.met[side] {
+                continue;
+            }
+            // How far inside the side each column is.
+            let mut depths = [zero; BLOCKS];
+            for (block, depth) in depths.iter_mut().enumerate() {
+                let column = f32x16::from_fn(
+                    simd,
+                    #[inline(always)]
+                    |lane| (at + block * BLOCK + lane) as f32,
+                );
+                *depth = if side == 0 {
+                    column - self.sides[0]
+                } else {
+                    f32x16::splat(simd, self.sides[1]) - column
+                };
+            }
+            if is_steep {
+                self.add(simd, side, Node::Upper, &depths, &mut sums);
+                self.add(simd, side, Node::Lower, &depths, &mut sums);
+            } else {
+                self.add(simd, side, Node::Average, &depths, &mut sums);
+            }
+        }
+        let shares = if is_steep { 2.0 } else { 1.0 };
+        // Both sides leave of a chord what the two leave together less all of it.
+        let full = if self.met[0] && self.met[1] {
+            shares * self.full()
+        } else {
+            0.0
+        };
+        let scale = 1.0 / (shares * disc.total);
+        let one = f32x16::splat(simd, 1.0);
+        let blocks = densities.as_chunks_mut::<BLOCK>().0.iter_mut();
+        for (sum, densities) in sums.into_iter().zip(blocks) {
+            let density = (sum - full) * scale;
+            density.max(zero).min(one).store_slice(densities);
+        }
+        BLOCKS * BLOCK
+    }
+
+    /// The disc's chords with the strips that they are of: half widths, insets of a side, and covers.
+    #[inline(always)]
+    fn runs(&self, side: usize, node: Node) -> [(&[f32], &[f32], &[f32]); 3] {
+        let Disc {
+            half,
+            groups,
+            upper,
+            middle,
+            lower,
+            ..
+        } = self.disc;
+        let [singles, grouped @ ..] = self.strips;
+        let (first, inner) = (self.first, groups * GROUP);
+        let start = first - inner;
+        let group = start.div_euclid(GROUP);
+        let grouped = &grouped[start.rem_euclid(GROUP) as usize];
+        [
+            run(upper, singles.run(side, node, first - half..start)),
+            run(middle, grouped.run(side, node, group..group + 2 * groups)),
+            run(lower, singles.run(side, node, first + inner..first + half)),
+        ]
+    }
+
+    /// Adds what of the chords lies on the inner side of a side.
+    #[inline(always)]
+    fn add<S: Simd, const BLOCKS: usize>(
+        &self,
+        simd: S,
+        side: usize,
+        node: Node,
+        depths: &[f32x16<S>; BLOCKS],
+        sums: &mut [f32x16<S>; BLOCKS],
+    ) {
+        let zero = f32x16::splat(simd, 0.0);
+        for (widths, insets, covers) in self.runs(side, node) {
+            for ((half_width, inset), cover) in widths.iter().zip(insets).zip(covers) {
+                let offset = f32x16::splat(simd, half_width - inset);
+                let width = f32x16::splat(simd, half_width + half_width);
+                let cover = f32x16::splat(simd, *cover);
+                for block in 0..BLOCKS {
+                    let inside = (depths[block] + offset).max(zero).min(width);
+                    sums[block] += inside * cover;
+                }
+            }
+        }
+    }
+
+    /// What the rectangle's height leaves of all chords.
+    fn full(&self) -> f32 {
+        let mut sum = 0.0;
+        for (widths, _, covers) in self.runs(0, Node::Average) {
+            for (half_width, cover) in widths.iter().zip(covers) {
+                sum += (half_width + half_width) * cover;
+            }
+        }
+        sum
+    }
+}
+
+/// Chords and their strips, without those that are not there.
 #[inline(always)]
-fn upright<S: Simd>(
-    simd: S,
-    distance: f32x8<S>,
-    chord: f32x8<S>,
-    half: f32x8<S>,
-    row: &Row,
-) -> f32x8<S> {
-    let (top, bottom) = (
-        f32x8::splat(simd, row.ends[0]),
-        f32x8::splat(simd, row.ends[1]),
-    );
-    let (above, below) = (
-        f32x8::splat(simd, row.halves[0]),
-        f32x8::splat(simd, row.halves[1]),
-    );
-    let height = bottom.min(chord).max(-chord) - top.min(chord).max(-chord);
-    let inside = below.min(half).max(-half) - above.min(half).max(-half);
-    let side = f32x8::splat(simd, 1.0).copysign(distance);
-    distance * height * FRAC_1_PI as f32 + side * ((below - above) - inside)
+fn run<'a>(
+    widths: &'a [f32],
+    (skipped, insets, covers): (usize, &'a [f32], &'a [f32]),
+) -> (&'a [f32], &'a [f32], &'a [f32]) {
+    (&widths[skipped.min(widths.len())..], insets, covers)
 }

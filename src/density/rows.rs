@@ -8,7 +8,7 @@
 mod kernels;
 mod pieces;
 
-pub(crate) use kernels::{LANES, half_disc, half_disc_x8};
+pub(crate) use kernels::{LANES, half_disc};
 pub(crate) use pieces::each_line;
 
 use core::ops::Range;

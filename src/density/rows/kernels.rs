@@ -51,7 +51,7 @@ pub(crate) fn half_disc(t: f32) -> f32 {
 
 /// As [`half_disc`], for eight numbers.
 #[inline(always)]
-pub(crate) fn half_disc_x8<S: Simd>(simd: S, t: f32x8<S>) -> f32x8<S> {
+fn half_disc_x8<S: Simd>(simd: S, t: f32x8<S>) -> f32x8<S> {
     let v = (f32x8::splat(simd, 1.0) - t.abs()).max(f32x8::splat(simd, 0.0));
     let [a, b, c, d, e] = HALF_DISC;
     let tail = v * v.sqrt() * (v * (v * (v * (v * e + d) + c) + b) + a);
