@@ -55,8 +55,9 @@ pub(crate) trait Sink {
     /// One density for some columns of row `y`.
     fn constant(&mut self, y: u32, columns: Range<u32>, density: f32);
 
-    /// The densities of row `y` from column `first` on.
-    fn values(&mut self, y: u32, first: u32, densities: &[f32]);
+    /// The densities of some columns of row `y`, at least as many: those behind them count for nothing, but where there are
+    /// enough of them they save a copy.
+    fn values(&mut self, y: u32, columns: Range<u32>, densities: &[f32]);
 }
 
 /// Calls `put` for each pixel that is given a density.
@@ -77,9 +78,10 @@ impl<T, F: FnMut(&mut T, f32)> Sink for Each<'_, T, F> {
     }
 
     #[inline(always)]
-    fn values(&mut self, y: u32, first: u32, densities: &[f32]) {
-        let start = y as usize * self.stride + first as usize;
-        for (pixel, density) in self.pixels[start..].iter_mut().zip(densities) {
+    fn values(&mut self, y: u32, columns: Range<u32>, densities: &[f32]) {
+        let start = y as usize * self.stride;
+        let pixels = &mut self.pixels[start + columns.start as usize..start + columns.end as usize];
+        for (pixel, density) in pixels.iter_mut().zip(densities) {
             (self.put)(pixel, *density);
         }
     }

@@ -3,8 +3,8 @@
 use core::ops::Range;
 
 use fearless_simd::{
-    Bytes, Level, Simd, SimdBase, SimdFloat, SimdFrom, dispatch, f32x16, i32x16, u8x64, u16x32,
-    u32x16,
+    Bytes, Level, Select, Simd, SimdBase, SimdFloat, SimdFrom, dispatch, f32x8, i32x8, u8x32,
+    u16x16, u32x8,
 };
 
 use super::Sink;
@@ -79,9 +79,10 @@ impl Sink for A8<'_> {
     }
 
     #[inline(always)]
-    fn values(&mut self, y: u32, first: u32, densities: &[f32]) {
+    fn values(&mut self, y: u32, columns: Range<u32>, densities: &[f32]) {
+        let first = columns.start;
         let start = y as usize * self.layout.stride + first as usize;
-        let row = &mut self.mask[start..start + densities.len()];
+        let row = &mut self.mask[start..start + columns.len()];
         let thresholds = thresholds(&self.layout, y, first);
         for (part, densities) in row.chunks_mut(8).zip(densities.chunks(8)) {
             for ((pixel, density), threshold) in part.iter_mut().zip(densities).zip(thresholds) {
@@ -118,8 +119,19 @@ pub(crate) struct Ink {
 }
 
 /// Pixels that are blended at once, and their bytes.
-const PIXELS: usize = 16;
+const PIXELS: usize = 8;
 const BLOCK: usize = 4 * PIXELS;
+
+/// Each pixel's number in its block.
+const LANES: [f32; PIXELS] = {
+    let mut lanes = [0.0; PIXELS];
+    let mut lane = 0;
+    while lane < PIXELS {
+        lanes[lane] = lane as f32;
+        lane += 1;
+    }
+    lanes
+};
 
 /// The upper byte of each half of 32 bits.
 const UPPER: u32 = 0xff00_ff00;
@@ -133,7 +145,8 @@ impl Rgba8<'_> {
             for (density, coverage) in densities.iter_mut().zip(mask) {
                 *density = f32::from(*coverage) * (1.0 / 255.0);
             }
-            self.values(y, first + part * PART as u32, &densities[..mask.len()]);
+            let first = first + part * PART as u32;
+            self.values(y, first..first + mask.len() as u32, &densities);
         }
     }
 }
@@ -141,28 +154,27 @@ impl Rgba8<'_> {
 impl Sink for Rgba8<'_> {
     fn constant(&mut self, y: u32, columns: Range<u32>, density: f32) {
         let (layout, ink, first) = (&self.layout, &self.ink, columns.start);
-        let pixels = row(self.pixels, layout, y, first, columns.len());
-        dispatch!(self.level, simd => ink.blend_constant(simd, pixels, density, (layout, y, first)));
+        let pixels = from(self.pixels, layout, y, first);
+        let count = columns.len();
+        dispatch!(self.level, simd => {
+            ink.blend_constant(simd, pixels, count, density, (layout, y, first));
+        });
     }
 
-    fn values(&mut self, y: u32, first: u32, densities: &[f32]) {
-        let (layout, ink) = (&self.layout, &self.ink);
-        let pixels = row(self.pixels, layout, y, first, densities.len());
-        dispatch!(self.level, simd => ink.blend_values(simd, pixels, densities, (layout, y, first)));
+    fn values(&mut self, y: u32, columns: Range<u32>, densities: &[f32]) {
+        let (layout, ink, first) = (&self.layout, &self.ink, columns.start);
+        let pixels = from(self.pixels, layout, y, first);
+        let count = columns.len();
+        dispatch!(self.level, simd => {
+            ink.blend_values(simd, pixels, count, densities, (layout, y, first));
+        });
     }
 }
 
-/// The bytes of `count` pixels of row `y` from column `first` on.
+/// The bytes of row `y` from column `first` on, and all behind them.
 #[inline(always)]
-fn row<'a>(
-    pixels: &'a mut [u8],
-    layout: &Layout,
-    y: u32,
-    first: u32,
-    count: usize,
-) -> &'a mut [u8] {
-    let start = 4 * (y as usize * layout.stride + first as usize);
-    &mut pixels[start..start + 4 * count]
+fn from<'a>(pixels: &'a mut [u8], layout: &Layout, y: u32, first: u32) -> &'a mut [u8] {
+    &mut pixels[4 * (y as usize * layout.stride + first as usize)..]
 }
 
 impl Ink {
@@ -175,66 +187,65 @@ impl Ink {
         }
     }
 
-    /// Blends one density onto pixels, the first of which is at a row and column of the layout.
+    /// Blends one density onto the first `count` pixels, which begin at a row and column of the layout.
     #[inline(always)]
     fn blend_constant<S: Simd>(
         &self,
         simd: S,
         pixels: &mut [u8],
+        count: usize,
         density: f32,
         (layout, y, first): (&Layout, u32, u32),
     ) {
         let brush = Brush::new(simd, self, &thresholds(layout, y, first));
-        let opacity = brush.opacity(f32x16::splat(simd, density));
+        let opacity = brush.opacity(f32x8::splat(simd, density));
         let paint = brush.paint(opacity);
-        let (blocks, rest) = pixels.as_chunks_mut::<BLOCK>();
-        for block in blocks {
+        let (blocks, rest) = pixels.split_at_mut(4 * (count - count % PIXELS));
+        for block in blocks.as_chunks_mut::<BLOCK>().0 {
             brush.blend(block, opacity, paint);
         }
-        if !rest.is_empty() {
-            with_rest(rest, |block| brush.blend(block, opacity, paint));
+        if !count.is_multiple_of(PIXELS) {
+            brush.blend_rest(rest, count % PIXELS, f32x8::splat(simd, density));
         }
     }
 
-    /// Blends densities onto pixels, the first of which is at a row and column of the layout.
+    /// Blends the first `count` densities onto pixels, which begin at a row and column of the layout.
     #[inline(always)]
     fn blend_values<S: Simd>(
         &self,
         simd: S,
         pixels: &mut [u8],
+        count: usize,
         densities: &[f32],
         (layout, y, first): (&Layout, u32, u32),
     ) {
         let brush = Brush::new(simd, self, &thresholds(layout, y, first));
-        let (parts, last) = densities.as_chunks::<PIXELS>();
-        let (blocks, rest) = pixels.as_chunks_mut::<BLOCK>();
-        for (block, part) in blocks.iter_mut().zip(parts) {
+        let (parts, last) = densities[..count].as_chunks::<PIXELS>();
+        let (blocks, rest) = pixels.split_at_mut(BLOCK * parts.len());
+        for (block, part) in blocks.as_chunks_mut::<BLOCK>().0.iter_mut().zip(parts) {
             brush.blend_part(block, part);
         }
-        if !rest.is_empty() {
-            let mut part = [0.0; PIXELS];
-            part[..last.len()].copy_from_slice(last);
-            with_rest(rest, |block| brush.blend_part(block, &part));
+        if !last.is_empty() {
+            let part = match densities[count - last.len()..].first_chunk() {
+                Some(part) => *part,
+                None => {
+                    let mut part = [0.0; PIXELS];
+                    part[..last.len()].copy_from_slice(last);
+                    part
+                }
+            };
+            brush.blend_rest(rest, last.len(), f32x8::simd_from(simd, part));
         }
     }
-}
-
-/// Calls `blend` with the bytes of less than a block.
-#[inline(always)]
-fn with_rest(rest: &mut [u8], blend: impl FnOnce(&mut [u8; BLOCK])) {
-    let mut block = [0; BLOCK];
-    block[..rest.len()].copy_from_slice(rest);
-    blend(&mut block);
-    rest.copy_from_slice(&block[..rest.len()]);
 }
 
 /// Paint at hand: each of its vectors holds two channels of a block's pixels.
 struct Brush<S: Simd> {
     simd: S,
     strength: f32,
-    red_blue: u16x32<S>,
-    green_alpha: u16x32<S>,
-    thresholds: u16x32<S>,
+    red_blue: u16x16<S>,
+    green_alpha: u16x16<S>,
+    thresholds: u16x16<S>,
 }
 
 impl<S: Simd> Brush<S> {
@@ -247,23 +258,23 @@ impl<S: Simd> Brush<S> {
         Self {
             simd,
             strength: ink.strength,
-            red_blue: u32x16::splat(simd, ink.red_blue).bitcast(),
-            green_alpha: u32x16::splat(simd, ink.green_alpha).bitcast(),
-            thresholds: u32x16::simd_from(simd, twice).bitcast(),
+            red_blue: u32x8::splat(simd, ink.red_blue).bitcast(),
+            green_alpha: u32x8::splat(simd, ink.green_alpha).bitcast(),
+            thresholds: u32x8::simd_from(simd, twice).bitcast(),
         }
     }
 
     /// The paint's opacity on a block's pixels, in 65535ths.
     #[inline(always)]
-    fn opacity(&self, densities: f32x16<S>) -> u16x32<S> {
-        let opacity: i32x16<S> = (densities * self.strength + 0.5).to_int();
-        let opacity: u32x16<S> = opacity.bitcast();
+    fn opacity(&self, densities: f32x8<S>) -> u16x16<S> {
+        let opacity: i32x8<S> = (densities * self.strength + 0.5).to_int();
+        let opacity: u32x8<S> = opacity.bitcast();
         (opacity | (opacity << 16)).bitcast()
     }
 
     /// What the paint adds to both pairs of channels, in 256ths.
     #[inline(always)]
-    fn paint(&self, opacity: u16x32<S>) -> [u16x32<S>; 2] {
+    fn paint(&self, opacity: u16x16<S>) -> [u16x16<S>; 2] {
         [
             high(self.simd, self.red_blue, opacity),
             high(self.simd, self.green_alpha, opacity),
@@ -272,23 +283,40 @@ impl<S: Simd> Brush<S> {
 
     #[inline(always)]
     fn blend_part(&self, block: &mut [u8; BLOCK], densities: &[f32; PIXELS]) {
-        let opacity = self.opacity(f32x16::simd_from(self.simd, *densities));
+        let opacity = self.opacity(f32x8::simd_from(self.simd, *densities));
         self.blend(block, opacity, self.paint(opacity));
     }
 
+    /// Blends the first `count` of a block's densities, and 0 onto other pixels, which leaves them as they are.
     #[inline(always)]
-    fn blend(&self, block: &mut [u8; BLOCK], opacity: u16x32<S>, paint: [u16x32<S>; 2]) {
-        let pixels: u32x16<S> = u8x64::simd_from(self.simd, *block).bitcast();
+    fn blend_rest(&self, rest: &mut [u8], count: usize, densities: f32x8<S>) {
+        let lanes = f32x8::simd_from(self.simd, LANES);
+        let within = lanes.simd_lt(f32x8::splat(self.simd, count as f32));
+        let densities = within.select(densities, f32x8::splat(self.simd, 0.0));
+        let opacity = self.opacity(densities);
+        if let Some(block) = rest.first_chunk_mut() {
+            self.blend(block, opacity, self.paint(opacity));
+            return;
+        }
+        let (mut block, rest) = ([0; BLOCK], &mut rest[..4 * count]);
+        block[..rest.len()].copy_from_slice(rest);
+        self.blend(&mut block, opacity, self.paint(opacity));
+        rest.copy_from_slice(&block[..rest.len()]);
+    }
+
+    #[inline(always)]
+    fn blend(&self, block: &mut [u8; BLOCK], opacity: u16x16<S>, paint: [u16x16<S>; 2]) {
+        let pixels: u32x8<S> = u8x32::simd_from(self.simd, *block).bitcast();
         let red_blue = self.over((pixels << 8) & UPPER, opacity, paint[0]) >> 8;
         let green_alpha = self.over(pixels & UPPER, opacity, paint[1]) & UPPER;
-        let mixed: u8x64<S> = ((red_blue & (UPPER >> 8)) | green_alpha).bitcast();
+        let mixed: u8x32<S> = ((red_blue & (UPPER >> 8)) | green_alpha).bitcast();
         *block = mixed.into();
     }
 
     /// Two channels under the paint, to be cut off to their upper bytes.
     #[inline(always)]
-    fn over(&self, channels: u32x16<S>, opacity: u16x32<S>, paint: u16x32<S>) -> u32x16<S> {
-        let below: u16x32<S> = channels.bitcast();
+    fn over(&self, channels: u32x8<S>, opacity: u16x16<S>, paint: u16x16<S>) -> u32x8<S> {
+        let below: u16x16<S> = channels.bitcast();
         let left = below - high(self.simd, below, opacity);
         // What is left and what is added are 255 upper bytes and 1 at most, a threshold is 254 lower ones.
         (left + paint + self.thresholds).bitcast()
@@ -297,11 +325,11 @@ impl<S: Simd> Brush<S> {
 
 /// The upper half of each product.
 #[inline(always)]
-fn high<S: Simd>(simd: S, a: u16x32<S>, b: u16x32<S>) -> u16x32<S> {
-    let (a, b): ([u16; 32], [u16; 32]) = (a.into(), b.into());
-    let mut high = [0; 32];
-    for lane in 0..32 {
+fn high<S: Simd>(simd: S, a: u16x16<S>, b: u16x16<S>) -> u16x16<S> {
+    let (a, b): ([u16; 16], [u16; 16]) = (a.into(), b.into());
+    let mut high = [0; 16];
+    for lane in 0..16 {
         high[lane] = ((u32::from(a[lane]) * u32::from(b[lane])) >> 16) as u16;
     }
-    u16x32::simd_from(simd, high)
+    u16x16::simd_from(simd, high)
 }

@@ -83,7 +83,7 @@ pub(crate) fn fill<S: Simd>(
                     let to_center = [across, (down / radius) as f32, (1.0 / radius) as f32];
                     let count = (part.end - part.start) as usize;
                     let densities = profile.look_up(simd, to_center, skipped, count);
-                    sink.values(row, column(part.start), densities);
+                    sink.values(row, column(part.start)..column(part.end), densities);
                 }
             }
         }
@@ -173,6 +173,6 @@ impl Profile {
             let far = f32x8::from_slice(simd, &far);
             (near + (far - near) * place.fract()).store_slice(values);
         }
-        &self.values[..count]
+        &self.values
     }
 }

@@ -111,7 +111,7 @@ impl Painter<'_> {
                         } else {
                             1.0
                         };
-                        self.sink.values(row, column, &[density as f32]);
+                        self.sink.values(row, column..column + 1, &[density as f32]);
                     }
                 }
             }
@@ -257,7 +257,7 @@ mod tests {
 
     impl Sink for Nowhere {
         fn constant(&mut self, _: u32, _: core::ops::Range<u32>, _: f32) {}
-        fn values(&mut self, _: u32, _: u32, _: &[f32]) {}
+        fn values(&mut self, _: u32, _: Range<u32>, _: &[f32]) {}
     }
 
     #[test]

@@ -561,7 +561,8 @@ impl Weaver<'_> {
                             a * weights[0] + b * weights[1] + (c * weights[2] + d * weights[3]);
                         sum.max(zero).min(one).store_slice(values);
                     }
-                    sink.values(number, first, &values[before..before + count]);
+                    let columns = first..first + count as u32;
+                    sink.values(number, columns, &values[before..]);
                 }
             }
             at = end;

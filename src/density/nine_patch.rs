@@ -62,8 +62,6 @@ struct Disc {
     lower: Vec<f32>,
     /// Its area, in strips and pixels.
     total: f32,
-    /// Strips from the top and from the bottom of the rectangle in which a side is not nearly upright.
-    steep: [i64; 2],
 }
 
 /// Columns on which a row's density changes.
@@ -121,7 +119,7 @@ impl Lattice {
             Self {
                 start: 0.0,
                 pitch: 1.0,
-                strips: (ALIGNED / pitch).round().max(1.0) as i64,
+                strips: (ALIGNED * cubic::steps(levels) / radius).round().max(1.0) as i64,
                 straight: 0,
                 alike: 0,
                 first: 0,
@@ -158,8 +156,8 @@ impl Lattice {
     }
 }
 
-/// Strips from one row to the next where each row of pixels is one, over the rows that a cubic between them would need:
-/// without cubics fewer strips are enough.
+/// Strips where each row of pixels is computed, over the rows that cubics between them would need: without cubics fewer
+/// are enough.
 const ALIGNED: f64 = 2.4;
 
 /// Rows nearer to each other than this, in pixels, are not worth interpolating between.
@@ -252,7 +250,7 @@ pub(crate) fn fill<S: Simd>(
                 if start < end {
                     let part = (start - first) as usize..(end - first) as usize;
                     let densities = kept.row(simd, zone, place, &lattice, part);
-                    sink.values(number, column(start), densities);
+                    sink.values(number, column(start)..column(end), densities);
                 }
             }
         }
@@ -282,13 +280,15 @@ impl NinePatchScratch {
             (depth / height) as i64 + GROUP + 2
         };
         let end = ((bottom - shape.min.y) / height) as i64;
-        self.disc.steep = [steep(tl.max(tr)), end - steep(bl.max(br))];
+        let steep = [steep(tl.max(tr)), end - steep(bl.max(br))];
         let count = end as usize + GROUP as usize + 2;
         let [singles, groups @ ..] = &mut self.strips;
         singles.set(simd, count, [0, 1], height as f32, &sides);
+        singles.set_steep(steep);
         for (first, groups) in groups.iter_mut().enumerate() {
             let count = count / GROUP as usize + 1;
             groups.set(simd, count, [first, GROUP as usize], height as f32, &sides);
+            groups.set_steep(steep.map(|strip| strip / GROUP));
         }
     }
 
@@ -319,7 +319,7 @@ impl NinePatchScratch {
         if apart { 2 } else { 1 }
     }
 
-    /// The densities of some columns of a zone, counted from its first, at a place among the lattice's rows.
+    /// The densities of some columns of a zone, counted from its first, and of what columns follow, at a place among the lattice's rows.
     #[inline(always)]
     fn row<S: Simd>(
         &mut self,
@@ -334,7 +334,7 @@ impl NinePatchScratch {
         if lattice.pitch == 1.0 {
             let row = lattice.folded(knot as i64);
             let slot = self.compute(simd, zone, row, lattice);
-            return &self.zones[zone].rows[slot][part];
+            return &self.zones[zone].rows[slot][part.start..];
         }
         let mut slots = [0; 4];
         for (slot, row) in slots.iter_mut().zip(knot as i64 - 1..) {
@@ -355,7 +355,7 @@ impl NinePatchScratch {
                 .min(one)
                 .store_slice(&mut zone.values[columns]);
         }
-        &zone.values[part]
+        &zone.values[part.start..]
     }
 
     /// Computes a row of the lattice, if it is not among the last; where it is.
@@ -387,7 +387,7 @@ impl NinePatchScratch {
             let densities = &mut row[at..];
             at += match left / BLOCK {
                 1 => reach.compute::<S, 1>(simd, at, densities),
-                2 => reach.compute::<S, 2>(simd, at, densities),
+                2 | 4 => reach.compute::<S, 2>(simd, at, densities),
                 _ => reach.compute::<S, 3>(simd, at, densities),
             };
         }
@@ -439,9 +439,12 @@ impl Reach<'_> {
         densities: &mut [f32],
     ) -> usize {
         let zero = f32x16::splat(simd, 0.0);
+        let lanes = f32x16::from_fn(
+            simd,
+            #[inline(always)]
+            |lane| lane as f32,
+        );
         let mut sums = [zero; BLOCKS];
-        let (disc, first) = (self.disc, self.first);
-        let is_steep = first - disc.half < disc.steep[0] || first + disc.half > disc.steep[1];
         for side in 0..2 {
             if !self.met[side] {
                 continue;
@@ -449,32 +452,22 @@ impl Reach<'_> {
             // How far inside the side each column is.
             let mut depths = [zero; BLOCKS];
             for (block, depth) in depths.iter_mut().enumerate() {
-                let column = f32x16::from_fn(
-                    simd,
-                    #[inline(always)]
-                    |lane| (at + block * BLOCK + lane) as f32,
-                );
+                let column = lanes + (at + block * BLOCK) as f32;
                 *depth = if side == 0 {
                     column - self.sides[0]
                 } else {
                     f32x16::splat(simd, self.sides[1]) - column
                 };
             }
-            if is_steep {
-                self.add(simd, side, Node::Upper, &depths, &mut sums);
-                self.add(simd, side, Node::Lower, &depths, &mut sums);
-            } else {
-                self.add(simd, side, Node::Average, &depths, &mut sums);
-            }
+            self.add(simd, side, &depths, &mut sums);
         }
-        let shares = if is_steep { 2.0 } else { 1.0 };
         // Both sides leave of a chord what the two leave together less all of it.
         let full = if self.met[0] && self.met[1] {
-            shares * self.full()
+            self.full()
         } else {
             0.0
         };
-        let scale = 1.0 / (shares * disc.total);
+        let scale = 1.0 / self.disc.total;
         let one = f32x16::splat(simd, 1.0);
         let blocks = densities.as_chunks_mut::<BLOCK>().0.iter_mut();
         for (sum, densities) in sums.into_iter().zip(blocks) {
@@ -484,26 +477,19 @@ impl Reach<'_> {
         BLOCKS * BLOCK
     }
 
-    /// The disc's chords with the strips that they are of: half widths, insets of a side, and covers.
+    /// The disc's chords: half widths, strips, and which of these they are of.
     #[inline(always)]
-    fn runs(&self, side: usize, node: Node) -> [(&[f32], &[f32], &[f32]); 3] {
-        let Disc {
-            half,
-            groups,
-            upper,
-            middle,
-            lower,
-            ..
-        } = self.disc;
+    fn runs(&self) -> [(&[f32], &Strips, Range<i64>); 3] {
+        let disc = self.disc;
         let [singles, grouped @ ..] = self.strips;
-        let (first, inner) = (self.first, groups * GROUP);
+        let (first, inner) = (self.first, disc.groups * GROUP);
         let start = first - inner;
         let group = start.div_euclid(GROUP);
         let grouped = &grouped[start.rem_euclid(GROUP) as usize];
         [
-            run(upper, singles.run(side, node, first - half..start)),
-            run(middle, grouped.run(side, node, group..group + 2 * groups)),
-            run(lower, singles.run(side, node, first + inner..first + half)),
+            (&disc.upper, singles, first - disc.half..start),
+            (&disc.middle, grouped, group..group + 2 * disc.groups),
+            (&disc.lower, singles, first + inner..first + disc.half),
         ]
     }
 
@@ -513,20 +499,32 @@ impl Reach<'_> {
         &self,
         simd: S,
         side: usize,
-        node: Node,
         depths: &[f32x16<S>; BLOCKS],
         sums: &mut [f32x16<S>; BLOCKS],
     ) {
         let zero = f32x16::splat(simd, 0.0);
-        for (widths, insets, covers) in self.runs(side, node) {
-            for ((half_width, inset), cover) in widths.iter().zip(insets).zip(covers) {
-                let offset = f32x16::splat(simd, half_width - inset);
-                let width = f32x16::splat(simd, half_width + half_width);
-                let cover = f32x16::splat(simd, *cover);
-                for block in 0..BLOCKS {
-                    let inside = (depths[block] + offset).max(zero).min(width);
-                    sums[block] += inside * cover;
+        for (widths, strips, of) in self.runs() {
+            let mut start = of.start.max(0);
+            for (end, nodes) in strips.parts() {
+                let end = end.min(of.end);
+                if start >= end {
+                    continue;
                 }
+                let widths = &widths[(start - of.start) as usize..];
+                let share = 1.0 / nodes.len() as f32;
+                for node in nodes {
+                    let (insets, covers) = strips.of(side, *node, start..end);
+                    for ((half_width, inset), cover) in widths.iter().zip(insets).zip(covers) {
+                        let offset = f32x16::splat(simd, half_width - inset);
+                        let width = f32x16::splat(simd, half_width + half_width);
+                        let cover = f32x16::splat(simd, cover * share);
+                        for block in 0..BLOCKS {
+                            let inside = (depths[block] + offset).max(zero).min(width);
+                            sums[block] += inside * cover;
+                        }
+                    }
+                }
+                start = end;
             }
         }
     }
@@ -534,20 +532,17 @@ impl Reach<'_> {
     /// What the rectangle's height leaves of all chords.
     fn full(&self) -> f32 {
         let mut sum = 0.0;
-        for (widths, _, covers) in self.runs(0, Node::Average) {
+        for (widths, strips, of) in self.runs() {
+            let (start, end) = (of.start.max(0), of.end.min(strips.count()));
+            if start >= end {
+                continue;
+            }
+            let (_, covers) = strips.of(0, Node::Average, start..end);
+            let widths = &widths[(start - of.start) as usize..];
             for (half_width, cover) in widths.iter().zip(covers) {
                 sum += (half_width + half_width) * cover;
             }
         }
         sum
     }
-}
-
-/// Chords and their strips, without those that are not there.
-#[inline(always)]
-fn run<'a>(
-    widths: &'a [f32],
-    (skipped, insets, covers): (usize, &'a [f32], &'a [f32]),
-) -> (&'a [f32], &'a [f32], &'a [f32]) {
-    (&widths[skipped.min(widths.len())..], insets, covers)
 }

@@ -380,11 +380,7 @@ impl Rows {
                 }
                 Kind::Values(place) => {
                     let place = place + (start - span.columns.start) as usize;
-                    sink.values(
-                        y,
-                        first,
-                        &self.values[place..place + (end - start) as usize],
-                    );
+                    sink.values(y, first..(end - origin) as u32, &self.values[place..]);
                 }
             }
         }

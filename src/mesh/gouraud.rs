@@ -81,7 +81,7 @@ impl ShadowMesh {
     pub(crate) fn scan_convert(&self, grid: &Grid, hidden: Option<&Hidden>, sink: &mut dyn Sink) {
         let mut put = |column: u32, row: u32, density: f32| {
             if hidden.is_none_or(|hidden| !hidden.hides(column, row)) {
-                sink.values(row, column, &[density]);
+                sink.values(row, column..column + 1, &[density]);
             }
         };
         for triangle in self.triangles() {
@@ -162,12 +162,12 @@ mod tests {
     impl Sink for Count {
         fn constant(&mut self, y: u32, columns: core::ops::Range<u32>, density: f32) {
             for x in columns {
-                self.values(y, x, &[density]);
+                self.values(y, x..x + 1, &[density]);
             }
         }
 
-        fn values(&mut self, y: u32, first: u32, densities: &[f32]) {
-            for (x, density) in (first..).zip(densities) {
+        fn values(&mut self, y: u32, columns: core::ops::Range<u32>, densities: &[f32]) {
+            for (x, density) in columns.zip(densities) {
                 let index = (y * self.width + x) as usize;
                 self.hits[index] += 1;
                 self.densities[index] = *density;

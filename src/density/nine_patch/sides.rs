@@ -27,6 +27,7 @@ pub(super) struct Strips {
     insets: [[Vec<f32>; 3]; 2],
     /// What is between the rectangle's top and bottom, as heights of the lowest strips.
     covers: Vec<f32>,
+    steep: [i64; 2],
 }
 
 impl Strips {
@@ -43,18 +44,19 @@ impl Strips {
     ) {
         let count = count.next_multiple_of(LANES);
         let height = pitch * high as f32;
-        let Self { insets, covers } = self;
+        let Self { insets, covers, .. } = self;
         for list in insets.iter_mut().flatten().chain([&mut *covers]) {
             list.resize(count, 0.0);
         }
         let splat = |v: f32| f32x16::splat(simd, v);
         let (zero, top, bottom) = (splat(0.0), splat(sides[0].top), splat(sides[0].bottom));
+        let lanes = f32x16::from_fn(
+            simd,
+            #[inline(always)]
+            |lane| lane as f32,
+        );
         for (block, covers) in covers.as_chunks_mut::<LANES>().0.iter_mut().enumerate() {
-            let strip = f32x16::from_fn(
-                simd,
-                #[inline(always)]
-                |lane| (first + (block * LANES + lane) * high) as f32,
-            );
+            let strip = lanes * high as f32 + (first + block * LANES * high) as f32;
             let start = (strip * pitch).max(top);
             let covered = ((strip * pitch + height).min(bottom) - start).max(zero);
             (covered * (1.0 / pitch)).store_slice(covers);
@@ -79,18 +81,38 @@ impl Strips {
         }
     }
 
-    /// The insets of a side and the covers of some strips, as far as there are any, and how many there are not before them.
+    /// Says up to which strip and from which on the sides are not nearly upright.
+    pub(super) fn set_steep(&mut self, [upper, lower]: [i64; 2]) {
+        let count = self.count();
+        let upper = upper.clamp(0, count);
+        self.steep = [upper, lower.clamp(upper, count)];
+    }
+
+    /// Where parts of the strips end, and where in each of its strips a side is to be looked up.
     #[inline(always)]
-    pub(super) fn run(&self, side: usize, of: Node, strips: Range<i64>) -> (usize, &[f32], &[f32]) {
-        let within = |strip: i64| strip.clamp(0, self.covers.len() as i64) as usize;
-        let (start, end) = (within(strips.start), within(strips.end));
-        let skipped = (start as i64 - strips.start) as usize;
-        let insets = &self.insets[side][of as usize];
-        (skipped, &insets[start..end], &self.covers[start..end])
+    pub(super) fn parts(&self) -> [(i64, &'static [Node]); 3] {
+        let [upper, lower] = self.steep;
+        [
+            (upper, &[Node::Upper, Node::Lower]),
+            (lower, &[Node::Average]),
+            (self.count(), &[Node::Upper, Node::Lower]),
+        ]
+    }
+
+    pub(super) fn count(&self) -> i64 {
+        self.covers.len() as i64
+    }
+
+    /// The insets of a side and the covers of some strips.
+    #[inline(always)]
+    pub(super) fn of(&self, side: usize, node: Node, strips: Range<i64>) -> (&[f32], &[f32]) {
+        let strips = strips.start as usize..strips.end as usize;
+        let insets = &self.insets[side][node as usize];
+        (&insets[strips.clone()], &self.covers[strips])
     }
 }
 
-/// Where strips are looked up.
+/// Where in a strip a side is looked up: at two nodes, or half-way between.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Node {
     Upper,
