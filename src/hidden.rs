@@ -164,6 +164,20 @@ impl Hidden {
     /// Sorts and joins the spans, and finds the rows among them.
     fn seal(&mut self) {
         let height = self.grid.height();
+        if self
+            .spans
+            .is_sorted_by(|a, b| (a.row, a.end) < (b.row, b.start))
+        {
+            let mut at = 0;
+            self.rows.clear();
+            for row in 0..=height {
+                while self.spans.get(at).is_some_and(|span| span.row < row) {
+                    at += 1;
+                }
+                self.rows.push(at as u32);
+            }
+            return;
+        }
         sort_by_row(
             &self.spans,
             |span| span.row,

@@ -76,6 +76,8 @@ struct Zone {
     /// The last rows that were computed, and which they are.
     rows: [Vec<f32>; RING],
     which: [Option<i64>; RING],
+    /// The blocks of them that were computed.
+    done: [Vec<bool>; RING],
     /// The pixels' densities where rows are apart.
     values: Vec<f32>,
 }
@@ -119,7 +121,7 @@ impl Lattice {
             Self {
                 start: 0.0,
                 pitch: 1.0,
-                strips: (ALIGNED * cubic::steps(levels) / radius).round().max(1.0) as i64,
+                strips: (ALIGNED * cubic::steps(levels) / radius - 0.1).ceil().max(1.0) as i64,
                 straight: 0,
                 alike: 0,
                 first: 0,
@@ -158,7 +160,7 @@ impl Lattice {
 
 /// Strips where each row of pixels is computed, over the rows that cubics between them would need: without cubics fewer
 /// are enough.
-const ALIGNED: f64 = 2.4;
+const ALIGNED: f64 = 1.85;
 
 /// Rows nearer to each other than this, in pixels, are not worth interpolating between.
 const NEAREST: f64 = 1.25;
@@ -311,8 +313,9 @@ impl NinePatchScratch {
             zone.sides = [shape.min.x, shape.max.x].map(|x| (x - zone.start as f64) as f32);
             zone.which = [None; RING];
             let width = ((zone.end - zone.start) as usize).next_multiple_of(BLOCK);
-            for row in &mut zone.rows {
+            for (row, done) in zone.rows.iter_mut().zip(&mut zone.done) {
                 row.resize(width, 0.0);
+                done.resize(width / BLOCK, false);
             }
             zone.values.resize(width, 0.0);
         }
@@ -333,12 +336,13 @@ impl NinePatchScratch {
         let blocks = part.start / BLOCK..part.end.div_ceil(BLOCK);
         if lattice.pitch == 1.0 {
             let row = lattice.folded(knot as i64);
-            let slot = self.compute(simd, zone, row, lattice);
+            let slot = self.compute(simd, zone, row, lattice, blocks);
             return &self.zones[zone].rows[slot][part.start..];
         }
         let mut slots = [0; 4];
         for (slot, row) in slots.iter_mut().zip(knot as i64 - 1..) {
-            *slot = self.compute(simd, zone, lattice.folded(row), lattice);
+            let row = lattice.folded(row);
+            *slot = self.compute(simd, zone, row, lattice, blocks.clone());
         }
         let weights = cubic::weights(place - knot);
         let zone = &mut self.zones[zone];
@@ -358,38 +362,47 @@ impl NinePatchScratch {
         &zone.values[part.start..]
     }
 
-    /// Computes a row of the lattice, if it is not among the last; where it is.
+    /// Computes some blocks of a row of the lattice, as far as they are not there; where it is.
     #[inline(always)]
-    fn compute<S: Simd>(&mut self, simd: S, zone: usize, row: i64, lattice: &Lattice) -> usize {
-        let Self {
-            disc,
-            strips,
-            zones,
-            ..
-        } = self;
-        let zone = &mut zones[zone];
+    fn compute<S: Simd>(
+        &mut self,
+        simd: S,
+        zone: usize,
+        row: i64,
+        lattice: &Lattice,
+        blocks: Range<usize>,
+    ) -> usize {
+        let zone = &mut self.zones[zone];
         let slot = row.rem_euclid(RING as i64) as usize;
-        if zone.which[slot] == Some(row) {
-            return slot;
+        let done = &mut zone.done[slot];
+        if zone.which[slot] != Some(row) {
+            zone.which[slot] = Some(row);
+            done.fill(false);
         }
-        zone.which[slot] = Some(row);
         let reach = Reach {
-            disc,
-            strips,
+            disc: &self.disc,
+            strips: &self.strips,
             first: row * lattice.strips - lattice.first,
             met: zone.met,
             sides: zone.sides,
         };
-        let mut at = 0;
-        let row = &mut zone.rows[slot];
-        while at < row.len() {
-            let left = row.len() - at;
-            let densities = &mut row[at..];
-            at += match left / BLOCK {
+        let mut block = blocks.start;
+        while block < blocks.end {
+            if done[block] {
+                block += 1;
+                continue;
+            }
+            let ahead = done[block..blocks.end].iter().take(5);
+            let missing = ahead.take_while(|done| !**done).count();
+            let at = block * BLOCK;
+            let densities = &mut zone.rows[slot][at..];
+            let count = match missing {
                 1 => reach.compute::<S, 1>(simd, at, densities),
                 2 | 4 => reach.compute::<S, 2>(simd, at, densities),
                 _ => reach.compute::<S, 3>(simd, at, densities),
             };
+            done[block..block + count].fill(true);
+            block += count;
         }
         slot
     }
@@ -430,7 +443,7 @@ struct Reach<'a> {
 }
 
 impl Reach<'_> {
-    /// Computes some blocks of densities from column `at` on; their columns.
+    /// Computes some blocks of densities from column `at` on; their number.
     #[inline(always)]
     fn compute<S: Simd, const BLOCKS: usize>(
         &self,
@@ -474,7 +487,7 @@ impl Reach<'_> {
             let density = (sum - full) * scale;
             density.max(zero).min(one).store_slice(densities);
         }
-        BLOCKS * BLOCK
+        BLOCKS
     }
 
     /// The disc's chords: half widths, strips, and which of these they are of.

@@ -15,8 +15,9 @@ pub(crate) struct Crossing {
     row: u32,
     /// By how much the winding number is larger right of it.
     winding: i32,
-    left: f64,
-    right: f64,
+    /// The first column that it may pass and the first behind it that it does not.
+    left: i32,
+    right: i32,
 }
 
 /// Memory for the crossings of one outline.
@@ -57,17 +58,16 @@ impl Inside {
             &mut self.sorted,
             &mut self.starts,
         );
-        let columns = f64::from(width);
+        let columns = width as i32;
         for row in 0..height {
             let range = self.starts[row as usize] as usize..self.starts[row as usize + 1] as usize;
             let crossings = &mut self.sorted[range];
-            crossings.sort_unstable_by(|a, b| a.left.total_cmp(&b.left));
-            let (mut winding, mut reached) = (0, f64::NEG_INFINITY);
+            crossings.sort_unstable_by_key(|crossing| crossing.left);
+            let (mut winding, mut reached) = (0, 0);
             for crossing in &*crossings {
-                if winding != 0 && crossing.left > reached {
-                    let first = reached.ceil().clamp(0.0, columns) as u32;
-                    let end = crossing.left.floor().clamp(0.0, columns) as u32;
-                    push(row, first, end);
+                let end = crossing.left.min(columns);
+                if winding != 0 && end > reached {
+                    push(row, reached as u32, end as u32);
                 }
                 reached = reached.max(crossing.right);
                 winding += crossing.winding;
@@ -107,8 +107,9 @@ impl Inside {
             self.crossings.push(Crossing {
                 row,
                 winding: if crosses { sign } else { 0 },
-                left: left - margin,
-                right: right + margin,
+                // What is far left or right is held at the ends of the numbers.
+                left: floor(left - margin),
+                right: -floor(-right - margin),
             });
             top = bottom;
         }
@@ -135,6 +136,12 @@ impl Inside {
             from = to;
         }
     }
+}
+
+/// The largest whole number not above `x`.
+fn floor(x: f64) -> i32 {
+    let whole = x as i32;
+    whole - i32::from(f64::from(whole) > x)
 }
 
 /// Sorts items by their rows, each row's as they were, into `sorted`; row n's begin at `starts[n]`.
