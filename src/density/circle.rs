@@ -8,11 +8,14 @@ use fearless_simd::{Simd, SimdBase, SimdFloat, f32x8, i32x8};
 use glam::DVec2;
 
 use super::frame::Frame;
-use super::rows::{LANES, Lattice, Points, Rows, Window};
+use super::rows::{Lattice, Points, Rows, Window};
 use super::{Each, PixelOptions, Sink, seen_columns};
 use crate::grid::Grid;
 use crate::outline::{Edge, Outline};
 use crate::scratch::Scratch;
+
+/// Pixels that are looked up at once.
+const LANES: usize = 8;
 
 /// Intervals along the penumbra.
 const INTERVALS: usize = 192;

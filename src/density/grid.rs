@@ -17,12 +17,12 @@ mod strips;
 
 use core::ops::Range;
 
-use fearless_simd::{Simd, SimdBase, f32x16};
+use fearless_simd::{Select, Simd, SimdBase, SimdMask, f32x16};
 
 use glam::DVec2;
 
 use self::disc::{Disc, reach};
-use self::strips::{BLOCK, Strips};
+use self::strips::{BLOCK, QUAD, QUADS, Strips};
 use super::chords::{GROUP, Height};
 use super::cubic;
 use super::frame::Frame;
@@ -36,9 +36,15 @@ use crate::scratch::Scratch;
 /// them from.
 const RING: i64 = 8;
 
-/// How far a row may be from what its neighbours at twice the distance foretell, over the tolerance. At the penumbra's
-/// ends that is 2.8 times the error between rows, at the tip of a cone twice.
+/// How far a row may be from what its neighbours at twice the distance foretell, over the tolerance: at the tip of a cone that
+/// is twice the error between rows.
 const LIMIT: f64 = 0.9;
+
+/// The same where the density is about 0 or 1. At the penumbra's ends it is 2.8 times the error between rows.
+const END_LIMIT: f64 = 1.6;
+
+/// Up to where a density is about 0.
+const END: f32 = 0.03;
 
 /// So many blocks of pixels are computed at once at most.
 const MOST: usize = 3;
@@ -73,10 +79,9 @@ struct Sums {
     groups: i64,
     /// The strips' rows, the groups' and the pairs'.
     sums: Vec<f32>,
-    /// The blocks of each group that edges cross, a bit each.
+    /// The quads of each group that edges cross, a bit each.
     crossed: Vec<u64>,
-    now: Vec<bool>,
-    /// What the blocks of a row of discs see.
+    /// Those from which a row of discs sees an edge.
     mixed: Vec<u64>,
 }
 
@@ -86,8 +91,8 @@ struct Row {
     densities: Vec<f32>,
     /// Runs of pixels from left to right without a gap, with their density where it is one.
     runs: Vec<(i64, Option<f32>)>,
-    /// Blocks that are not as their neighbours foretell.
-    surprises: Vec<bool>,
+    /// The pixels of each block that are not as their neighbours foretell, a bit each.
+    surprises: Vec<u64>,
 }
 
 /// Pixels from one of the lattice's strips to the next.
@@ -172,7 +177,8 @@ pub(crate) fn fill<S: Simd>(
         margin,
         next: i64::MIN,
         next_group: i64::MIN,
-        limit: (LIMIT * levels / 255.0) as f32,
+        limits: [LIMIT, END_LIMIT].map(|limit| (limit * levels / 255.0) as f32),
+        near: pitch.ceil() as i64,
         full: full as f32,
         kept,
     };
@@ -257,8 +263,6 @@ impl Sums {
         self.sums.resize(rows as usize * self.length, 0.0);
         let words = self.words();
         self.crossed.resize((self.groups + 1) as usize * words, 0);
-        self.now.clear();
-        self.now.resize(blocks, false);
     }
 
     /// Where the sums of a strip begin, those of a group, and those of it and the one below.
@@ -275,7 +279,7 @@ impl Sums {
     }
 
     fn words(&self) -> usize {
-        self.blocks.div_ceil(64)
+        (self.blocks * BLOCK / QUAD).div_ceil(64)
     }
 
     /// The bits of a group.
@@ -293,15 +297,7 @@ impl Sums {
         let first = group * GROUP;
         for strip in first..first + GROUP {
             let at = (strip & self.strips) as usize * self.length;
-            strips.sum(
-                simd,
-                strip,
-                &mut self.sums[at..at + self.length],
-                &mut self.now,
-            );
-            for (block, _) in self.now.iter().enumerate().filter(|(_, crossed)| **crossed) {
-                crossed[block / 64] |= 1 << (block % 64);
-            }
+            strips.sum(simd, strip, &mut self.sums[at..at + self.length], crossed);
         }
         self.copy(self.strip(first), self.group(group));
         for strip in first + 1..first + GROUP {
@@ -325,14 +321,14 @@ impl Sums {
         }
     }
 
-    /// Finds the blocks from which the discs of a lattice's row see an edge.
+    /// Finds the quads from which the discs of a lattice's row see an edge.
     fn find_mixed(&mut self, disc: &Disc, row: i64) {
         self.mixed.clear();
         self.mixed.resize(self.words(), 0);
-        // From the widest of the disc's chords to the narrowest, all reach farther by one block at a time.
-        let mut reached = disc.reach() / BLOCK + 1;
+        // From the widest of the disc's chords to the narrowest, all reach farther by one quad at a time.
+        let mut reached = disc.reach() / QUAD + 1;
         for chord in disc.chords.all.iter().skip(1).step_by(2) {
-            let farthest = reach(chord).0 / BLOCK + 1;
+            let farthest = reach(chord).0 / QUAD + 1;
             while reached > farthest {
                 widen(&mut self.mixed);
                 reached -= 1;
@@ -376,7 +372,10 @@ struct Weaver<'a> {
     /// The next row of the lattice, and the next group of strips.
     next: i64,
     next_group: i64,
-    limit: f32,
+    /// How far a density may be from what is foretold, and one of about 0 or 1.
+    limits: [f32; 2],
+    /// So many pixels beside those that are foretold badly are no better.
+    near: i64,
     full: f32,
 }
 
@@ -428,8 +427,8 @@ impl Weaver<'_> {
         let middle = sums.group(row);
         let cell = self.full * GROUP as f32;
         let is_mixed = |block: usize| {
-            let number = block + self.margin;
-            block < blocks && sums.mixed[number / 64] >> (number % 64) & 1 == 1
+            let quad = (block + self.margin) * (BLOCK / QUAD);
+            block < blocks && sums.mixed[quad / 64] >> (quad % 64) & QUADS != 0
         };
         let mut block = 0;
         while block < blocks {
@@ -470,21 +469,27 @@ impl Weaver<'_> {
         let GridScratch { ring, coarse, .. } = &mut *self.kept;
         let at = |row: i64| &ring[row.rem_euclid(RING) as usize].surprises;
         coarse.clear();
+        let near = self.near;
         for (block, (above, below)) in at(row).iter().zip(at(row + 1)).enumerate() {
-            if !above && !below {
+            let bits = above | below;
+            if bits == 0 {
                 continue;
             }
-            let start = self.first + (block * BLOCK) as i64;
-            let end = (start + BLOCK as i64).min(self.columns.end);
+            // Each block by itself: which others are drawn changes nothing.
+            let first = self.first + (block * BLOCK) as i64;
+            let start = first + (i64::from(bits.trailing_zeros()) - near).max(0);
+            let end = i64::from(u64::BITS - bits.leading_zeros()) + near;
+            let end = (first + end.min(BLOCK as i64)).min(self.columns.end);
             let start = start.max(self.columns.start);
             match coarse.last_mut() {
-                Some(last) if last.end == start => last.end = end,
-                _ => coarse.push(start..end),
+                Some(last) if last.end >= start => last.end = last.end.max(end),
+                _ if start < end => coarse.push(start..end),
+                _ => {}
             }
         }
     }
 
-    /// Finds the blocks of a row that its neighbours at one and three rows foretell badly.
+    /// Finds the pixels of a row that its neighbours at one and three rows foretell badly.
     #[inline(always)]
     fn surprise<S: Simd>(&mut self, simd: S, row: i64) {
         let ring = &mut self.kept.ring;
@@ -494,14 +499,17 @@ impl Weaver<'_> {
             let row = &ring[(row + offset).rem_euclid(RING) as usize];
             row.densities.as_chunks::<BLOCK>().0.iter()
         };
-        let limit = f32x16::splat(simd, self.limit);
+        let [limit, end_limit] = self.limits.map(|limit| f32x16::splat(simd, limit));
+        let (half, middle) = (f32x16::splat(simd, 0.5), f32x16::splat(simd, 0.5 - END));
         let outer = near(-3).zip(near(3));
         for ((here, (a, b)), (c, d)) in near(0).zip(near(-1).zip(near(1))).zip(outer) {
             let here = f32x16::from_slice(simd, here);
             let (a, b) = (f32x16::from_slice(simd, a), f32x16::from_slice(simd, b));
             let (c, d) = (f32x16::from_slice(simd, c), f32x16::from_slice(simd, d));
             let surprise = here - ((a + b) * (9.0 / 16.0) - (c + d) * (1.0 / 16.0));
-            surprises.push(simd.any_true_mask32x16(surprise.abs().simd_gt(limit)));
+            let at_end = (here - half).abs().simd_gt(middle);
+            let limit = at_end.select(end_limit, limit);
+            surprises.push(surprise.abs().simd_gt(limit).to_bitmask());
         }
         ring[row.rem_euclid(RING) as usize].surprises = surprises;
     }

@@ -121,7 +121,9 @@ impl Lattice {
             Self {
                 start: 0.0,
                 pitch: 1.0,
-                strips: (ALIGNED * cubic::steps(levels) / radius - 0.1).ceil().max(1.0) as i64,
+                strips: (ALIGNED * cubic::steps(levels) / radius - 0.1)
+                    .ceil()
+                    .max(1.0) as i64,
                 straight: 0,
                 alike: 0,
                 first: 0,

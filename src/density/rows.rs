@@ -13,7 +13,7 @@ pub(crate) use pieces::each_line;
 
 use core::ops::Range;
 
-use fearless_simd::{Simd, SimdBase, f32x8};
+use fearless_simd::{Simd, SimdBase, f32x16};
 use glam::DVec2;
 
 use super::Sink;
@@ -471,7 +471,7 @@ impl Stroke<'_> {
         simd: S,
         offset: f32,
         values: &mut [f32],
-        kernel: impl Fn(f32x8<S>) -> f32x8<S>,
+        kernel: impl Fn(f32x16<S>) -> f32x16<S>,
     ) {
         // What a piece adds counts from the middle between what it is far left and far right.
         let middle = self.halves[0] - self.halves[1];
@@ -479,18 +479,18 @@ impl Stroke<'_> {
         let mut columns = kernels::lanes(simd) + offset;
         if let [_] = self.columns {
             for values in values.chunks_exact_mut(LANES) {
-                let sum = f32x8::from_slice(simd, values) + (kernel(columns) + middle);
+                let sum = f32x16::from_slice(simd, values) + (kernel(columns) + middle);
                 sum.store_slice(values);
                 columns += LANES as f32;
             }
             return;
         }
         for values in values.chunks_exact_mut(LANES) {
-            let mut sum = f32x8::splat(simd, middle);
+            let mut sum = f32x16::splat(simd, middle);
             for (offset, share) in self.columns {
                 sum += kernel(columns + *offset * spread) * *share;
             }
-            let sum = f32x8::from_slice(simd, values) + sum * weight;
+            let sum = f32x16::from_slice(simd, values) + sum * weight;
             sum.store_slice(values);
             columns += LANES as f32;
         }

@@ -10,6 +10,8 @@ use crate::density::chords::{Chord, Chords, Height};
 struct Part {
     left: usize,
     right: usize,
+    /// The weights of the nearer cells and of the farther ones.
+    share: f32,
     rest: f32,
 }
 
@@ -17,6 +19,8 @@ struct Part {
 #[derive(Debug, Default)]
 pub(crate) struct Disc {
     pub(super) chords: Chords,
+    /// What each chord reaches.
+    reaches: Vec<(usize, f32)>,
     parts: Vec<Part>,
     /// The steps that the disc has in the umbra.
     total: f32,
@@ -33,14 +37,15 @@ impl Disc {
     pub(super) fn set(&mut self, radius: f64, height: f64, full: f64) {
         self.chords.set(radius, height, Height::Pair);
         // In the order of the pixels' own sums, so that the umbra's density is 1.
-        let (mut whole_sum, mut rest_sum) = (0.0, 0.0);
+        self.total = 0.0;
+        self.reaches.clear();
         for chord in &self.chords.all {
             let (whole, rest) = reach(chord);
+            self.reaches.push((whole, rest));
             let cell = (full * chord.height.strips() as f64) as f32;
-            whole_sum += cell * (2.0 * whole as f32 - 1.0);
-            rest_sum += (cell + cell) * rest;
+            let [near, far] = [-1.0, 1.0].map(|more| cell * (2.0 * whole as f32 + more));
+            self.total += near * (1.0 - rest) + far * rest;
         }
-        self.total = whole_sum + rest_sum;
     }
 
     /// The farthest cell from a pixel's own that its disc reaches.
@@ -52,11 +57,13 @@ impl Disc {
     /// Finds where the rows of sums are that a row of discs meets, by the place of a chord's row.
     pub(super) fn lay(&mut self, place: impl Fn(&Chord) -> usize) {
         self.parts.clear();
-        self.parts.extend(self.chords.all.iter().map(|chord| {
-            let (row, (whole, rest)) = (place(chord), reach(chord));
+        let chords = self.chords.all.iter().zip(&self.reaches);
+        self.parts.extend(chords.map(|(chord, &(whole, rest))| {
+            let row = place(chord);
             Part {
                 left: row - whole,
                 right: row + whole,
+                share: 1.0 - rest,
                 rest,
             }
         }));
@@ -72,7 +79,7 @@ impl Disc {
         densities: &mut [f32],
     ) {
         let zero = f32x16::splat(simd, 0.0);
-        let (mut whole, mut rest) = ([zero; BLOCKS], [zero; BLOCKS]);
+        let mut totals = [zero; BLOCKS];
         for part in &self.parts {
             let right = &sums[at + part.right..][..BLOCKS * BLOCK + 1];
             let left = &sums[at + part.left..][..BLOCKS * BLOCK + 1];
@@ -82,15 +89,14 @@ impl Disc {
                 let far = f32x16::from_slice(simd, &right[start + 1..start + 1 + BLOCK]);
                 let last = f32x16::from_slice(simd, &left[start..start + BLOCK]);
                 let first = f32x16::from_slice(simd, &left[start + 1..start + 1 + BLOCK]);
-                // Whole numbers: all but the last product is exact.
-                whole[block] += near - first;
-                rest[block] += ((far - near) + (first - last)) * part.rest;
+                // Differences of whole numbers, wherever the sums begin: these are exact.
+                totals[block] += (near - first) * part.share + (far - last) * part.rest;
             }
         }
         let one = f32x16::splat(simd, 1.0);
         let blocks = densities.as_chunks_mut::<BLOCK>().0.iter_mut();
         for (block, densities) in blocks.enumerate().take(BLOCKS) {
-            let density = (whole[block] + rest[block]) / self.total;
+            let density = totals[block] / self.total;
             density.max(zero).min(one).store_slice(densities);
         }
     }

@@ -10,6 +10,12 @@ use glam::DVec2;
 /// Cells that are taken at once.
 pub(super) const BLOCK: usize = 16;
 
+/// Cells that are marked together.
+pub(super) const QUAD: usize = 4;
+
+/// The marks of a block.
+pub(super) const QUADS: u64 = (1 << (BLOCK / QUAD)) - 1;
+
 /// Goes down the strips of one outline.
 #[derive(Debug, Default)]
 pub(crate) struct Strips {
@@ -24,6 +30,8 @@ pub(crate) struct Strips {
     deltas: Vec<i32>,
     /// The steps that each block of the last strip had all over.
     before: Vec<i32>,
+    /// Whether edges cross a block of the present one.
+    crossed: Vec<bool>,
 }
 
 /// A line from top to bottom, y in strips.
@@ -51,6 +59,8 @@ impl Strips {
         self.deltas.resize(blocks * BLOCK + 1, 0);
         self.before.clear();
         self.before.resize(blocks, 0);
+        self.crossed.clear();
+        self.crossed.resize(blocks, false);
     }
 
     /// Takes a line: x in pixels, y in strips.
@@ -79,15 +89,15 @@ impl Strips {
         self.lines.sort_unstable_by(|a, b| a.top.total_cmp(&b.top));
     }
 
-    /// Puts the sums of the steps that a strip covers left of each cell into `sums`, and into `crossed` whether a
-    /// block is not covered alike, or not as in the strip before. Strips are asked for from top to bottom.
+    /// Puts the sums of the steps that a strip covers left of each cell into `sums`, and sets those of `marks`, a bit
+    /// a quad, that are not covered alike or not as in the strip before. Strips are asked for from top to bottom.
     #[inline(always)]
     pub(super) fn sum<S: Simd>(
         &mut self,
         simd: S,
         strip: i64,
         sums: &mut [f32],
-        crossed: &mut [bool],
+        marks: &mut [u64],
     ) {
         let strip = strip as f64;
         while let Some(line) = self.lines.get(self.reached).filter(|l| l.top < strip + 1.0) {
@@ -99,10 +109,10 @@ impl Strips {
         let lines = &self.lines;
         self.active
             .retain(|&index| lines[index as usize].bottom > strip);
-        crossed.fill(false);
         let mut cells = Cells {
             deltas: &mut self.deltas,
-            crossed,
+            crossed: &mut self.crossed,
+            marks,
             cover: 0,
         };
         for &index in &self.active {
@@ -120,15 +130,16 @@ impl Strips {
             |lane| lane as f32,
         );
         let mut sum = 0;
-        for (((sums, deltas), crossed), before) in sums
+        for (block, (((sums, deltas), crossed), before)) in sums
             .as_chunks_mut::<BLOCK>()
             .0
             .iter_mut()
             .zip(self.deltas.as_chunks_mut::<BLOCK>().0)
-            .zip(crossed)
+            .zip(&mut self.crossed)
             .zip(&mut self.before)
+            .enumerate()
         {
-            if *crossed {
+            if core::mem::take(crossed) {
                 for (to, delta) in sums.iter_mut().zip(deltas) {
                     *to = sum as f32;
                     cover += core::mem::take(delta);
@@ -138,7 +149,10 @@ impl Strips {
                 let ramp = lanes * cover as f32 + sum as f32;
                 ramp.store_slice(sums);
                 sum += cover * BLOCK as i32;
-                *crossed = *before != cover;
+                if *before != cover {
+                    let quad = block * (BLOCK / QUAD);
+                    marks[quad / 64] |= QUADS << (quad % 64);
+                }
             }
             *before = cover;
         }
@@ -155,6 +169,7 @@ impl Strips {
 struct Cells<'a> {
     deltas: &'a mut [i32],
     crossed: &'a mut [bool],
+    marks: &'a mut [u64],
     /// What covers the first cell from its left.
     cover: i32,
 }
@@ -173,6 +188,9 @@ impl Cells<'_> {
             return;
         }
         let (first, last) = (left.max(0.0) as usize, right.min(end - 1.0) as usize);
+        for quad in first / QUAD..=(last + 1).min(self.deltas.len() - 2) / QUAD {
+            self.marks[quad / 64] |= 1 << (quad % 64);
+        }
         for crossed in
             &mut self.crossed[first / BLOCK..=(last + 1).min(self.deltas.len() - 2) / BLOCK]
         {

@@ -1,14 +1,14 @@
-//! What one piece of the outline adds to the densities of eight pixels of a row at once, in single precision.
+//! What one piece of the outline adds to the densities of sixteen pixels of a row at once, in single precision.
 //!
 //! By Green's theorem the area that the outline shares with the unit disc about a pixel is the sum over its pieces of the
 //! integral of x dy, with x held between the circle's two sides: left of the disc a piece counts -sqrt(1 - y²), right of it
 //! +sqrt(1 - y²). No angle is needed, and far pieces are differences of one function of their ends' y, which cancel along
 //! a closed loop. All values are divided by π, so that they add up to density.
 
-use fearless_simd::{Select, Simd, SimdBase, SimdFloat, f32x8};
+use fearless_simd::{Select, Simd, SimdBase, SimdFloat, f32x16};
 
 /// Pixels that a kernel takes at once. It is the same on every machine, so that all round alike.
-pub(crate) const LANES: usize = 8;
+pub(crate) const LANES: usize = 16;
 
 const FRAC_1_PI: f32 = core::f32::consts::FRAC_1_PI;
 
@@ -49,32 +49,32 @@ pub(crate) fn half_disc(t: f32) -> f32 {
     (0.25 - tail).copysign(t)
 }
 
-/// As [`half_disc`], for eight numbers.
+/// As [`half_disc`], for sixteen numbers.
 #[inline(always)]
-fn half_disc_x8<S: Simd>(simd: S, t: f32x8<S>) -> f32x8<S> {
-    let v = (f32x8::splat(simd, 1.0) - t.abs()).max(f32x8::splat(simd, 0.0));
+fn half_disc_x8<S: Simd>(simd: S, t: f32x16<S>) -> f32x16<S> {
+    let v = (f32x16::splat(simd, 1.0) - t.abs()).max(f32x16::splat(simd, 0.0));
     let [a, b, c, d, e] = HALF_DISC;
     let tail = v * v.sqrt() * (v * (v * (v * (v * e + d) + c) + b) + a);
-    (f32x8::splat(simd, 0.25) - tail).copysign(t)
+    (f32x16::splat(simd, 0.25) - tail).copysign(t)
 }
 
 /// `half_disc(y)` for a point (x, y) of the circle: without a root, as x is one.
 #[inline(always)]
-fn half_disc_at<S: Simd>(simd: S, x: f32x8<S>, y: f32x8<S>) -> f32x8<S> {
+fn half_disc_at<S: Simd>(simd: S, x: f32x16<S>, y: f32x16<S>) -> f32x16<S> {
     let (x, height) = (x.abs(), y.abs());
     let flat = height.simd_le(x);
     let u = x.min(height);
     let u2 = u * u;
     let [a, b, c, d, e] = ARC_SINE;
     let sine = u * (u2 * (u2 * (u2 * (u2 * e + d) + c) + b) + a);
-    let angle = flat.select(sine, f32x8::splat(simd, 0.25) - sine);
+    let angle = flat.select(sine, f32x16::splat(simd, 0.25) - sine);
     (x * height * (0.5 * FRAC_1_PI) + angle).copysign(y)
 }
 
-/// 0 to 7.
+/// 0 to 15.
 #[inline(always)]
-pub(super) fn lanes<S: Simd>(simd: S) -> f32x8<S> {
-    f32x8::from_fn(simd, |lane| lane as f32)
+pub(super) fn lanes<S: Simd>(simd: S) -> f32x16<S> {
+    f32x16::from_fn(simd, |lane| lane as f32)
 }
 
 /// A number that changes by the same step from pixel to pixel.
@@ -86,14 +86,14 @@ pub(super) struct Ramp {
 
 impl Ramp {
     #[inline(always)]
-    fn at<S: Simd>(self, columns: f32x8<S>) -> f32x8<S> {
+    fn at<S: Simd>(self, columns: f32x16<S>) -> f32x16<S> {
         columns * self.step + self.start
     }
 }
 
 /// A line that passes the disc's whole height: its profile is F(t) - 1/2.
 #[inline(always)]
-pub(super) fn through_line<S: Simd>(simd: S, columns: f32x8<S>, distance: Ramp) -> f32x8<S> {
+pub(super) fn through_line<S: Simd>(simd: S, columns: f32x16<S>, distance: Ramp) -> f32x16<S> {
     half_disc_x8(simd, distance.at(columns)) * 2.0
 }
 
@@ -110,9 +110,9 @@ pub(super) struct RowLine {
 }
 
 #[inline(always)]
-pub(super) fn line<S: Simd>(simd: S, columns: f32x8<S>, line: &RowLine) -> f32x8<S> {
-    let zero = f32x8::splat(simd, 0.0);
-    let one = f32x8::splat(simd, 1.0);
+pub(super) fn line<S: Simd>(simd: S, columns: f32x16<S>, line: &RowLine) -> f32x16<S> {
+    let zero = f32x16::splat(simd, 0.0);
+    let one = f32x16::splat(simd, 1.0);
     let [along_x, along_y] = line.along;
     let distance = line.distance.at(columns);
     let start = line.start.at(columns);
@@ -166,9 +166,9 @@ pub(super) struct RowArc {
 
 /// The area between an arc and its chord, over π, for the squared chord.
 #[inline(always)]
-fn segment<S: Simd>(simd: S, squared_chord: f32x8<S>, radius: f32) -> f32x8<S> {
+fn segment<S: Simd>(simd: S, squared_chord: f32x16<S>, radius: f32) -> f32x16<S> {
     let quarter = 0.25 / (radius * radius);
-    let t2 = (squared_chord * quarter).min(f32x8::splat(simd, 0.5));
+    let t2 = (squared_chord * quarter).min(f32x16::splat(simd, 0.5));
     let [a, b, c, d, e] = SEGMENT;
     let p = t2 * (t2 * (t2 * (t2 * e + d) + c) + b) + a;
     squared_chord * squared_chord.sqrt() * p * (0.125 * FRAC_1_PI / radius)
@@ -183,15 +183,15 @@ pub(super) fn segment_of(squared_chord: f32, radius: f32) -> f32 {
 }
 
 #[inline(always)]
-pub(super) fn arc<S: Simd>(simd: S, columns: f32x8<S>, arc: &RowArc) -> f32x8<S> {
+pub(super) fn arc<S: Simd>(simd: S, columns: f32x16<S>, arc: &RowArc) -> f32x16<S> {
     // How far beyond its ends a point may seem to lie that rounding has moved there, and the more of it the nearer the two
     // centres are: over their squared distance.
     const SLACK: f32 = 1e-5;
     const SLACK_NEAR: f32 = 1e-9;
     // An arc so near to the disc's own circle lies on it: where they cross is a matter of rounding.
     const SAME: f32 = 1e-4;
-    let zero = f32x8::splat(simd, 0.0);
-    let one = f32x8::splat(simd, 1.0);
+    let zero = f32x16::splat(simd, 0.0);
+    let one = f32x16::splat(simd, 1.0);
 
     let center_x = arc.center.at(columns);
     let [from_x, from_y, from_width] = arc.from;
@@ -206,7 +206,7 @@ pub(super) fn arc<S: Simd>(simd: S, columns: f32x8<S>, arc: &RowArc) -> f32x8<S>
     // Of the centre's own coordinates, so that both points lie on the disc's circle however near to each other the centres
     // are.
     let distance = center_x * center_x + arc.center_y * arc.center_y;
-    let inverse = one / distance.max(f32x8::splat(simd, 1e-12));
+    let inverse = one / distance.max(f32x16::splat(simd, 1e-12));
     let toward = (power + 1.0) * 0.5 * inverse;
     let squared = inverse - toward * toward;
     let aside = squared.max(zero).sqrt() * arc.turn;
@@ -228,10 +228,10 @@ pub(super) fn arc<S: Simd>(simd: S, columns: f32x8<S>, arc: &RowArc) -> f32x8<S>
     let notched = from_in & to_in & crossed & leaves.simd_lt(enters);
     let same = (SAME - (arc.radius - 1.0).abs()).max(0.0);
     let met = (from_in | to_in | (crossed & enters.simd_le(leaves)))
-        & distance.simd_ge(f32x8::splat(simd, same * same));
+        & distance.simd_ge(f32x16::splat(simd, same * same));
 
     // From p to q it runs inside; or, where notched, all but from p to q.
-    let splat = |v: f32| f32x8::splat(simd, v);
+    let splat = |v: f32| f32x16::splat(simd, v);
     let p_x = notched.select(leave_x, from_in.select(from_x, enter_x));
     let p_y = notched.select(leave_y, from_in.select(splat(from_y), enter_y));
     let q_x = notched.select(enter_x, to_in.select(to_x, leave_x));
@@ -266,9 +266,9 @@ pub(super) fn arc<S: Simd>(simd: S, columns: f32x8<S>, arc: &RowArc) -> f32x8<S>
 /// An arc that passes the disc's whole height: the disc's part beyond the two circles' common chord, and the arc's own
 /// beyond that.
 #[inline(always)]
-pub(super) fn through_arc<S: Simd>(simd: S, columns: f32x8<S>, arc: &RowArc) -> f32x8<S> {
-    let zero = f32x8::splat(simd, 0.0);
-    let one = f32x8::splat(simd, 1.0);
+pub(super) fn through_arc<S: Simd>(simd: S, columns: f32x16<S>, arc: &RowArc) -> f32x16<S> {
+    let zero = f32x16::splat(simd, 0.0);
+    let one = f32x16::splat(simd, 1.0);
     let [power, slope, curvature] = arc.power;
     let power = columns * (columns * curvature + slope) + power;
     let far = (power + arc.radius * arc.radius).sqrt();
@@ -279,7 +279,7 @@ pub(super) fn through_arc<S: Simd>(simd: S, columns: f32x8<S>, arc: &RowArc) -> 
         segment(simd, squared * 4.0, arc.radius) - half_disc_at(simd, half_chord, reach) * 2.0;
     // On the centre's other side it is the circle's other half that a disc may meet.
     let beyond = (arc.center.at(columns) * arc.side).simd_ge(zero);
-    beyond.select(f32x8::splat(simd, 0.5), area) * arc.turn
+    beyond.select(f32x16::splat(simd, 0.5), area) * arc.turn
 }
 
 /// A line within the height of a row of pixels, whose squares it cuts.
@@ -292,16 +292,16 @@ pub(super) struct RowCut {
 
 /// The coverage that a line adds to unit squares: as for discs, with x held between the square's two sides.
 #[inline(always)]
-pub(super) fn cut<S: Simd>(simd: S, columns: f32x8<S>, cut: &RowCut) -> f32x8<S> {
+pub(super) fn cut<S: Simd>(simd: S, columns: f32x16<S>, cut: &RowCut) -> f32x16<S> {
     /// Ends nearer to each other than this are one: a quotient of two tiny differences has no digits.
     const STEEP: f32 = 1e-3;
-    let half = f32x8::splat(simd, 0.5);
+    let half = f32x16::splat(simd, 0.5);
     let [from, to] = cut.ends.map(|end| end.at(columns));
     let width = cut.ends[1].start - cut.ends[0].start;
     if width.abs() < STEEP {
         return ((from + to) * half).max(-half).min(half) * cut.height;
     }
-    let integral = |x: f32x8<S>| {
+    let integral = |x: f32x16<S>| {
         let inside = x.max(-half).min(half);
         // Half the square within, a line of slope 1/2 beyond.
         half * inside * inside + (x.abs() - inside.abs()) * half
