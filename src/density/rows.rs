@@ -8,7 +8,7 @@
 mod kernels;
 mod pieces;
 
-pub(crate) use kernels::{LANES, half_disc};
+pub(crate) use kernels::{LANES, Wide, half_disc};
 pub(crate) use pieces::each_line;
 
 use core::ops::Range;
@@ -18,7 +18,7 @@ use glam::DVec2;
 
 use super::Sink;
 use crate::outline::Edge;
-use kernels::{Ramp, RowArc, RowCut, RowLine};
+use kernels::{Ramp, RowArc, RowCut, RowLine, WideArc, WideLine};
 use pieces::Piece;
 
 /// What a density is the average over.
@@ -65,6 +65,8 @@ pub(crate) struct Points<'a> {
     pub(crate) lines: &'a [Line],
     /// Offsets in columns, and weights.
     pub(crate) columns: &'a [(f32, f32)],
+    /// What they stand for, if there is more than one.
+    pub(crate) wide: Option<Wide>,
 }
 
 impl Points<'static> {
@@ -76,6 +78,7 @@ impl Points<'static> {
             spread: 1.0,
         }],
         columns: &[(0.0, 1.0)],
+        wide: None,
     };
 }
 
@@ -116,6 +119,9 @@ enum RowForm {
     ThroughArc(RowArc),
     Arc(RowArc),
     Cut(RowCut),
+    /// A line or an arc that passes all that a pixel averages over.
+    WideLine(WideLine),
+    WideArc(WideArc),
 }
 
 /// Steps count whole units of 2^-30 of density.
@@ -129,11 +135,14 @@ struct Entry {
     /// What its passing adds to all columns from `end` on.
     step: i64,
     piece: u32,
-    /// Which of the rows of points it is seen from.
+    /// Which of the rows of points it is seen from, or [`ALL`] of them at once.
     line: u32,
     /// The window's half at the y of its two ends.
     halves: [f32; 2],
 }
+
+/// The number of no row of points.
+const ALL: u32 = u32::MAX;
 
 /// Draws rows of one outline, from top to bottom.
 #[derive(Debug, Default)]
@@ -212,6 +221,8 @@ impl Rows {
         self.y = y;
         let next = pieces.get(self.reached).map_or(f64::INFINITY, |p| p.low);
         let mut still_until = next - reach;
+        // A piece that passes all that a pixel averages over is seen otherwise than one that does not.
+        let all = points.wide.map_or(reach, |wide| wide.half + wide.radius);
         let mut maker = Maker {
             columns,
             lattice,
@@ -221,12 +232,16 @@ impl Rows {
         };
         for &index in &self.active {
             let piece = &pieces[index as usize];
-            let still = piece.is_upright() && piece.low <= y - reach;
+            let still = piece.is_upright() && piece.low <= y - all;
             still_until = still_until.min(if still {
-                piece.high - reach
+                piece.high - all
             } else {
                 f64::NEG_INFINITY
             });
+            if let Some(wide) = points.wide.filter(|wide| piece.passes(y, wide)) {
+                maker.add_wide(index, piece, y, &wide, points.lines);
+                continue;
+            }
             for (number, line) in points.lines.iter().enumerate() {
                 maker.add(index, piece, y + line.offset, number as u32, line);
             }
@@ -335,11 +350,17 @@ impl Rows {
             if from < to {
                 let place = (from - left) as usize;
                 let strides = ((to - from + stride - 1) / stride) as usize;
+                let wide = points.wide.filter(|_| entry.line == ALL);
+                let (points, line) = match wide {
+                    Some(_) => (&Points::CENTER, 0),
+                    None => (points, entry.line as usize),
+                };
                 let stroke = Stroke {
                     piece: &self.pieces[entry.piece as usize],
                     lattice,
                     halves: entry.halves,
-                    line: &points.lines[entry.line as usize],
+                    wide,
+                    line: &points.lines[line],
                     columns: points.columns,
                 };
                 let mut part = &mut values[place..place + strides * LANES];
@@ -392,6 +413,7 @@ struct Stroke<'a> {
     piece: &'a Piece,
     lattice: &'a Lattice,
     halves: [f32; 2],
+    wide: Option<Wide>,
     line: &'a Line,
     columns: &'a [(f32, f32)],
 }
@@ -401,7 +423,35 @@ impl Stroke<'_> {
     fn add_to<S: Simd>(&self, simd: S, y: f64, origin: i64, offset: f32, values: &mut [f32]) {
         let x = self.lattice.start + origin as f64 * self.lattice.pitch;
         let seen = DVec2::new(x, y + self.line.offset);
-        match self.piece.seen_from(seen, self.lattice, self.halves) {
+        let form = match &self.wide {
+            Some(wide) => self.piece.seen_widely(seen, self.lattice, wide),
+            None => self.piece.seen_from(seen, self.lattice, self.halves),
+        };
+        match form {
+            RowForm::WideLine(line) => simd.vectorize(
+                #[inline(always)]
+                || {
+                    self.add(
+                        simd,
+                        offset,
+                        values,
+                        #[inline(always)]
+                        |columns| kernels::wide_line(simd, columns, &line),
+                    );
+                },
+            ),
+            RowForm::WideArc(arc) => simd.vectorize(
+                #[inline(always)]
+                || {
+                    self.add(
+                        simd,
+                        offset,
+                        values,
+                        #[inline(always)]
+                        |columns| kernels::wide_arc(simd, columns, &arc),
+                    );
+                },
+            ),
             RowForm::ThroughLine(distance) => simd.vectorize(
                 #[inline(always)]
                 || {
@@ -501,6 +551,14 @@ fn density(steps: i64) -> f32 {
     ((steps as f64 / UNIT) as f32).clamp(0.0, 1.0)
 }
 
+/// What a piece adds to all on its right, seen from a row of points. Each end is rounded alone, so that what follows cancels
+/// it.
+#[inline(always)]
+fn step(line: &Line, halves: [f32; 2]) -> i64 {
+    let whole = |half: f32| (2.0 * UNIT * line.weight * f64::from(half)) as i64;
+    whole(halves[0]) - whole(halves[1])
+}
+
 /// Makes the entries of one row.
 struct Maker<'a> {
     columns: Range<i64>,
@@ -519,11 +577,32 @@ impl Maker<'_> {
             return;
         }
         let halves = [piece.from.y - y, piece.to.y - y].map(|rise| window.half(rise));
-        // Each end is rounded alone, so that what follows cancels it.
-        let whole = |half: f32| (2.0 * UNIT * line.weight * f64::from(half)) as i64;
-        let step = whole(halves[0]) - whole(halves[1]);
         let spread = line.spread * self.width * self.lattice.pitch;
-        let [left, right] = piece.extent(y, window);
+        let extent = piece.extent(y, window);
+        let step = step(line, halves);
+        self.push(index, number, halves, step, extent, spread);
+    }
+
+    /// Adds a piece that passes all that a pixel averages over.
+    #[inline(always)]
+    fn add_wide(&mut self, index: u32, piece: &Piece, y: f64, wide: &Wide, lines: &[Line]) {
+        let falls = 0.25_f32.copysign((piece.from.y - y) as f32);
+        let halves = [falls, -falls];
+        // As the rows of points would have it one by one, so that pieces that end in them cancel it.
+        let step = lines.iter().map(|line| step(line, halves)).sum();
+        self.push(index, ALL, halves, step, piece.wide_extent(y, wide), 0.0);
+    }
+
+    #[inline(always)]
+    fn push(
+        &mut self,
+        index: u32,
+        number: u32,
+        halves: [f32; 2],
+        step: i64,
+        [left, right]: [f64; 2],
+        spread: f64,
+    ) {
         // One column to spare on both sides, whichever way these are rounded.
         let column = |x: f64| ((x - self.lattice.start) * self.lattice.density) as i64;
         let first = column(left - spread) - 1;

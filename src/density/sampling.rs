@@ -3,7 +3,7 @@
 use core::f64::consts::PI;
 
 use super::averaged_side;
-use super::rows::{Line, Points, Window};
+use super::rows::{Line, Points, Wide, Window};
 
 /// Points of one pixel, for discs or for squares. On edges, corners, arcs, slivers and dots their average is within 0.8 level
 /// of the exact one. The worst are slivers along the axes, and of these hairlines as wide as a pixel: where squares are
@@ -16,6 +16,8 @@ pub(crate) struct Sampling {
     lines: [Line; MOST],
     columns: [(f32, f32); MOST],
     counts: [usize; 2],
+    /// What the points stand for, if there are several.
+    wide: Option<Wide>,
 }
 
 const MOST: usize = 9;
@@ -23,6 +25,9 @@ const MOST: usize = 9;
 /// Below this penumbra radius in pixels, squares averaged over the disc take fewer points than discs averaged over the
 /// square.
 const SQUARES: f64 = 0.26;
+
+/// From this penumbra radius in pixels on, squares are so small beside discs that differences across them lose their digits.
+const WIDE: f64 = 1.65;
 
 /// Nodes and weights of the Gauss-Legendre rules on -1 to 1, the half that is not negative (Abramowitz & Stegun 1964, table
 /// 25.4).
@@ -82,6 +87,7 @@ impl Sampling {
             lines: [Points::CENTER.lines[0]; MOST],
             columns: [Points::CENTER.columns[0]; MOST],
             counts: [1, 1],
+            wide: None,
         };
         if radius == 0.0 {
             (sampling.window, sampling.unit) = (Window::Square, 1.0);
@@ -105,6 +111,12 @@ impl Sampling {
                 _ => 2,
             };
             sampling.over_square(averaged_side(radius), count);
+        }
+        if 0.0 < radius && radius < WIDE {
+            sampling.wide = Some(Wide {
+                half: averaged_side(radius) / 2.0 / sampling.unit,
+                radius: radius / sampling.unit,
+            });
         }
         sampling
     }
@@ -144,6 +156,7 @@ impl Sampling {
         Points {
             lines: &self.lines[..self.counts[0]],
             columns: &self.columns[..self.counts[1]],
+            wide: self.wide,
         }
     }
 }

@@ -4,7 +4,7 @@ use core::f64::consts::{FRAC_PI_2, PI, SQRT_2};
 
 use glam::DVec2;
 
-use super::kernels::{self, Ramp, RowArc, RowCut, RowLine};
+use super::kernels::{self, LEAST_SPAN, Ramp, RowArc, RowCut, RowLine, Wide, WideArc, WideLine};
 use super::{Lattice, RowForm, Window};
 use crate::outline::{Arc, Edge};
 
@@ -301,6 +301,93 @@ impl Piece {
             }
         }
         [left, right.max(left)]
+    }
+
+    /// Whether it passes the whole height of what a pixel of the row at `y` averages over, and is straight enough there.
+    #[inline(always)]
+    pub(super) fn passes(&self, y: f64, wide: &Wide) -> bool {
+        // Twice 2 levels at most lie between an arc and the line that touches it: so many half heights of the profile.
+        const BENT: f64 = 10.4;
+        let reach = wide.half + wide.radius;
+        let straight = match self.form {
+            Form::Line { .. } => true,
+            Form::Arc { radius, .. } => {
+                let squares = wide.half * wide.half + wide.radius * wide.radius;
+                radius * wide.half.max(wide.radius) >= BENT * squares
+            }
+        };
+        straight && self.low <= y - reach && self.high >= y + reach
+    }
+
+    /// The least and the largest x from which a pixel of the row at `y` averages over points that see the piece.
+    #[inline(always)]
+    pub(super) fn wide_extent(&self, y: f64, wide: &Wide) -> [f64; 2] {
+        let reach = wide.half + wide.radius;
+        match self.form {
+            Form::Line {
+                along,
+                slope,
+                width,
+                ..
+            } => {
+                let middle = self.from.x + (y - self.from.y) * slope;
+                let across = along.x.abs() + along.y.abs();
+                let reach = (wide.radius + wide.half * across) * width;
+                [middle - reach, middle + reach]
+            }
+            Form::Arc {
+                center,
+                radius,
+                side,
+                ..
+            } => {
+                let (a, b) = (self.x_at(y - reach), self.x_at(y + reach));
+                let (mut left, mut right) = (a.min(b) - reach, a.max(b) + reach);
+                if (center.y - y).abs() <= reach {
+                    let farthest = center.x + side * radius;
+                    left = left.min(farthest - reach);
+                    right = right.max(farthest + reach);
+                }
+                [left, right]
+            }
+        }
+    }
+
+    /// The piece that passes all that pixels average over, as a row sees it from its column at `origin`.
+    #[inline(always)]
+    pub(super) fn seen_widely(&self, origin: DVec2, lattice: &Lattice, wide: &Wide) -> RowForm {
+        let ramp = |start: f64, slope: f64| Ramp {
+            start: start as f32,
+            step: (-slope * lattice.pitch) as f32,
+        };
+        let (half, radius) = (wide.half as f32, wide.radius as f32);
+        match self.form {
+            Form::Line { along, .. } => {
+                let [a, b] = [along.x, along.y].map(|part| part.abs() as f32 * half);
+                RowForm::WideLine(WideLine {
+                    distance: ramp((self.from - origin).perp_dot(along), along.y),
+                    spans: [a.max(b), a.min(b).max(LEAST_SPAN * half)],
+                    radius,
+                })
+            }
+            Form::Arc {
+                center,
+                radius: arc_radius,
+                turn,
+                side,
+            } => {
+                let seen = center - origin;
+                RowForm::WideArc(WideArc {
+                    center: ramp(seen.x, 1.0),
+                    center_y: seen.y as f32,
+                    arc_radius: arc_radius as f32,
+                    turn: turn as f32,
+                    side: side as f32,
+                    half,
+                    radius,
+                })
+            }
+        }
     }
 
     /// The piece as a row sees it from its column at `origin`.
