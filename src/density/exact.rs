@@ -257,7 +257,7 @@ mod tests {
 
     impl Sink for Nowhere {
         fn constant(&mut self, _: u32, _: core::ops::Range<u32>, _: f32) {}
-        fn values(&mut self, _: u32, _: Range<u32>, _: &[f32]) {}
+        fn values(&mut self, _: u32, _: core::ops::Range<u32>, _: &[f32]) {}
     }
 
     #[test]

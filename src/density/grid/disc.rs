@@ -83,14 +83,14 @@ impl Disc {
         for part in &self.parts {
             let right = &sums[at + part.right..][..BLOCKS * BLOCK + 1];
             let left = &sums[at + part.left..][..BLOCKS * BLOCK + 1];
-            for block in 0..BLOCKS {
+            for (block, total) in totals.iter_mut().enumerate() {
                 let start = block * BLOCK;
                 let near = f32x16::from_slice(simd, &right[start..start + BLOCK]);
                 let far = f32x16::from_slice(simd, &right[start + 1..start + 1 + BLOCK]);
                 let last = f32x16::from_slice(simd, &left[start..start + BLOCK]);
                 let first = f32x16::from_slice(simd, &left[start + 1..start + 1 + BLOCK]);
                 // Differences of whole numbers, wherever the sums begin: these are exact.
-                totals[block] += (near - first) * part.share + (far - last) * part.rest;
+                *total += (near - first) * part.share + (far - last) * part.rest;
             }
         }
         let one = f32x16::splat(simd, 1.0);

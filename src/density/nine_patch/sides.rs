@@ -8,7 +8,7 @@ use fearless_simd::{Simd, SimdBase, SimdFloat, f32x16};
 const LANES: usize = 16;
 
 /// Gauss's two nodes on 0 to 1: where in a strip its side is looked up.
-const NODES: [f32; 2] = [0.211_324_87, 0.788_675_13];
+const NODES: [f32; 2] = [0.211_324_87, 0.788_675_1];
 
 /// A rectangle's corners on one of its sides, all in pixels from the first strip's top.
 #[derive(Debug, Clone, Copy)]
