@@ -235,8 +235,9 @@ impl Hidden {
     }
 }
 
-/// How far lines in place of curves may move a pixel's coverage, in levels.
-const CURVES: f64 = 0.25;
+/// How far lines in place of curves may move a pixel's coverage, in levels: they are within [`inside::FLATNESS`] of curves as
+/// round as a pixel is wide, and of all others.
+const CURVES: f64 = 4.0;
 
 #[cfg(test)]
 mod tests {

@@ -78,15 +78,15 @@ fn on_pixels(shadow: &Shadow, levels: f64, per_unit: f64) -> (Method, &'static s
     }
     let few_steps = radius >= grid::narrowest(levels);
     let Some(rounded) = nine_patch::suited(shadow, per_unit) else {
-        return if few_steps && shadow.is_intricate(per_unit) {
+        return if few_steps && grid_is_cheaper(shadow, per_unit) {
             (
                 Method::Grid,
-                "many edges at once: fewer points than pixels are enough",
+                "many edges within reach: sums along strips cost less than each one",
             )
         } else {
             (
                 Method::Direct,
-                "few edges: its pixels cost less than what would spare them",
+                "few edges within reach: their closed form costs least",
             )
         };
     };
@@ -98,6 +98,21 @@ fn on_pixels(shadow: &Shadow, levels: f64, per_unit: f64) -> (Method, &'static s
             "a rounded rectangle: its chords are closed form in its sides",
         )
     }
+}
+
+/// Whether rows of sums cost less than the closed form of every edge. Measured on one core with AVX-512, in ns: an edge costs
+/// the closed form 0.9 for each pixel whose disc may meet it, an arc 3.2, and a pixel 0.3; sums cost 0.6 a pixel and their
+/// rows 36 over the penumbra radius.
+fn grid_is_cheaper(shadow: &Shadow, per_unit: f64) -> bool {
+    let (census, radius) = (shadow.census(), shadow.radius() * per_unit);
+    let met = |count: f64, length: f64| {
+        2.0 * radius * length * per_unit + count * core::f64::consts::PI * radius * radius
+    };
+    let lines = met(census.lines, census.line_length);
+    let arcs = met(census.arcs, census.arc_length);
+    let size = census.size * per_unit + 2.0 * radius;
+    let pixels = size.x * size.y;
+    0.9 * lines + 3.2 * arcs + 0.3 * pixels > (0.6 + 36.0 / radius) * pixels
 }
 
 /// Tolerances below this, in levels, are kept by the closed form alone.
@@ -117,7 +132,7 @@ impl fmt::Display for Method {
 
 /// Why a text names no method.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{0:?} is no method: exact, direct or mesh")]
+#[error("{0:?} is no method: exact, direct, grid, nine-patch or mesh")]
 pub struct ParseMethodError(String);
 
 impl FromStr for Method {

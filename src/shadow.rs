@@ -39,6 +39,16 @@ pub struct Shadow {
     parts: Vec<Shadow>,
 }
 
+/// How many edges an outline is drawn as, how long they are together and how large its box, in scene units.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Census {
+    pub(crate) lines: f64,
+    pub(crate) line_length: f64,
+    pub(crate) arcs: f64,
+    pub(crate) arc_length: f64,
+    pub(crate) size: DVec2,
+}
+
 /// A box from its least to its largest x and y, in scene units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds {
@@ -230,30 +240,38 @@ impl Shadow {
         })
     }
 
-    /// Whether a disc meets many edges at once, where it meets any.
-    pub(crate) fn is_intricate(&self, per_unit: f64) -> bool {
+    /// What there is to draw.
+    pub(crate) fn census(&self) -> Census {
         // A curve is drawn as about so many lines.
-        const LINES: usize = 24;
-        let curves = self.curved.iter().flatten();
-        let curved: usize = curves
-            .flat_map(|shape| &shape.contours)
-            .map(|contour| contour.segments.len() * LINES)
-            .sum();
-        let (mut lines, mut arcs) = (0, 0);
+        const LINES: f64 = 40.0;
+        let mut census = Census::default();
         for edge in self.fixed.edges() {
             match edge {
-                Edge::Arc(_) => arcs += 1,
-                Edge::Line(_) | Edge::Border(_) => lines += 1,
+                Edge::Arc(arc) => {
+                    census.arcs += 1.0;
+                    census.arc_length += arc.sweep.abs() * arc.radius;
+                }
+                Edge::Line(line) | Edge::Border(line) => {
+                    census.lines += 1.0;
+                    census.line_length += (line.to - line.from).length();
+                }
             }
         }
-        // An arc costs about as much as two lines, and points off the straight and narrow cost most.
-        let count = (lines + 2 * arcs + curved) as f64;
-        let Some((min, max)) = self.hull() else {
-            return false;
-        };
-        let size = (max - min).max_element() * per_unit;
-        let radius = self.radius * per_unit;
-        count * (1.0 + radius / size) > 24.0 || radius > size / 4.0
+        for contour in self
+            .curved
+            .iter()
+            .flatten()
+            .flat_map(|shape| &shape.contours)
+        {
+            let mut from = contour.start;
+            for segment in &contour.segments {
+                census.lines += LINES;
+                census.line_length += (segment.end() - from).length();
+                from = segment.end();
+            }
+        }
+        census.size = self.hull().map_or(DVec2::ZERO, |(min, max)| max - min);
+        census
     }
 
     /// Pushes the outline's edges as they are needed to draw it, loop after loop: on pixels of side `pixel` (scene units)
