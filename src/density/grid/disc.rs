@@ -5,11 +5,11 @@ use fearless_simd::{Simd, SimdBase, f32x16};
 use super::strips::BLOCK;
 use crate::density::chords::{Chord, Chords, Height};
 
-/// A chord where its row of sums is: the cells at its ends, counted from a pixel's.
+/// A chord, where its row of sums begins, and how many cells from a pixel's own its ends are.
 #[derive(Debug, Clone, Copy)]
 struct Part {
-    left: usize,
-    right: usize,
+    row: usize,
+    whole: usize,
     /// The weights of the nearer cells and of the farther ones.
     share: f32,
     rest: f32,
@@ -61,8 +61,8 @@ impl Disc {
         self.parts.extend(chords.map(|(chord, &(whole, rest))| {
             let row = place(chord);
             Part {
-                left: row - whole,
-                right: row + whole,
+                row,
+                whole,
                 share: 1.0 - rest,
                 rest,
             }
@@ -81,8 +81,8 @@ impl Disc {
         let zero = f32x16::splat(simd, 0.0);
         let mut totals = [zero; BLOCKS];
         for part in &self.parts {
-            let right = &sums[at + part.right..][..BLOCKS * BLOCK + 1];
-            let left = &sums[at + part.left..][..BLOCKS * BLOCK + 1];
+            let right = &sums[at + part.row + part.whole..][..BLOCKS * BLOCK + 1];
+            let left = &sums[at + part.row - part.whole..][..BLOCKS * BLOCK + 1];
             for (block, total) in totals.iter_mut().enumerate() {
                 let start = block * BLOCK;
                 let near = f32x16::from_slice(simd, &right[start..start + BLOCK]);
