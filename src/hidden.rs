@@ -96,7 +96,11 @@ impl Hidden {
                 match (hidden, start) {
                     (true, None) => start = Some(column),
                     (false, Some(first)) => {
-                        self.push(row, first, column);
+                        self.spans.push(Span {
+                            row,
+                            start: first,
+                            end: column,
+                        });
                         start = None;
                     }
                     _ => {}
@@ -153,12 +157,6 @@ impl Hidden {
     fn of_row(&self, row: u32) -> &[Span] {
         let row = row as usize;
         &self.spans[self.rows[row] as usize..self.rows[row + 1] as usize]
-    }
-
-    fn push(&mut self, row: u32, start: u32, end: u32) {
-        if start < end {
-            self.spans.push(Span { row, start, end });
-        }
     }
 
     /// Sorts and joins the spans, and finds the rows among them.
@@ -227,9 +225,7 @@ impl Hidden {
         scratch
             .inside
             .find(placed, margin, size, |row, start, end| {
-                if start < end {
-                    spans.push(Span { row, start, end });
-                }
+                spans.push(Span { row, start, end });
             });
         scratch.give(edges);
     }

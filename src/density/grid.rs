@@ -38,10 +38,10 @@ const RING: i64 = 8;
 
 /// How far a row may be from what its neighbours at twice the distance foretell, over the tolerance: at the tip of a cone that
 /// is twice the error between rows.
-const LIMIT: f64 = 0.9;
+const LIMIT: f64 = 0.7;
 
 /// The same where the density is about 0 or 1. At the penumbra's ends it is 2.8 times the error between rows.
-const END_LIMIT: f64 = 1.6;
+const END_LIMIT: f64 = 1.0;
 
 /// Up to where a density is about 0.
 const END: f32 = 0.03;
@@ -121,7 +121,7 @@ pub(crate) fn suits(radius: f64, levels: f64, columns: f64) -> bool {
 /// The least penumbra radius, in pixels, for which cells of a pixel's width keep a tolerance. Where an upright edge halves a
 /// cell at the disc's end, linear sums are wrong by a quarter of it along sqrt(8 r) pixels: 57 r^-1.5 levels.
 pub(crate) fn narrowest(levels: f64) -> f64 {
-    let share = 0.7 * levels;
+    let share = 0.5 * levels;
     libm::cbrt((57.0 / share) * (57.0 / share))
 }
 

@@ -162,7 +162,7 @@ impl Lattice {
 
 /// Strips where each row of pixels is computed, over the rows that cubics between them would need: without cubics fewer
 /// are enough.
-const ALIGNED: f64 = 1.85;
+const ALIGNED: f64 = 2.0;
 
 /// Rows nearer to each other than this, in pixels, are not worth interpolating between.
 const NEAREST: f64 = 1.25;
@@ -197,7 +197,7 @@ fn steps(shape: &Rounded, radius: f64, levels: f64) -> f64 {
 const STEEP: f64 = 0.17;
 
 /// The error at a tip, in levels, times the rows a penumbra radius.
-const TIP: f64 = 18.0;
+const TIP: f64 = 20.0;
 
 /// Gives `sink` the density of every pixel of the grid that is in the shadow of a rounded rectangle and not hidden.
 #[inline(always)]
