@@ -101,8 +101,8 @@ fn on_pixels(shadow: &Shadow, levels: f64, per_unit: f64) -> (Method, &'static s
 }
 
 /// Whether rows of sums cost less than the closed form of every edge. Measured on one core with AVX-512, in ns: an edge costs
-/// the closed form 0.9 for each pixel whose disc may meet it, an arc 3.2, and a pixel 0.3; sums cost 0.6 a pixel and their
-/// rows 36 over the penumbra radius.
+/// the closed form 0.9 for each pixel whose disc may meet it, an arc 3.2, and a pixel 0.3; sums cost 0.7 a pixel and their
+/// rows 50 over the penumbra radius.
 fn grid_is_cheaper(shadow: &Shadow, per_unit: f64) -> bool {
     let (census, radius) = (shadow.census(), shadow.radius() * per_unit);
     let met = |count: f64, length: f64| {
@@ -112,7 +112,7 @@ fn grid_is_cheaper(shadow: &Shadow, per_unit: f64) -> bool {
     let arcs = met(census.arcs, census.arc_length);
     let size = census.size * per_unit + 2.0 * radius;
     let pixels = size.x * size.y;
-    0.9 * lines + 3.2 * arcs + 0.3 * pixels > (0.6 + 36.0 / radius) * pixels
+    0.9 * lines + 3.2 * arcs + 0.3 * pixels > (0.7 + 50.0 / radius) * pixels
 }
 
 /// Tolerances below this, in levels, are kept by the closed form alone.

@@ -121,7 +121,7 @@ pub(crate) fn suits(radius: f64, levels: f64, columns: f64) -> bool {
 /// The least penumbra radius, in pixels, for which cells of a pixel's width keep a tolerance. Where an upright edge halves a
 /// cell at the disc's end, linear sums are wrong by a quarter of it along sqrt(8 r) pixels: 57 r^-1.5 levels.
 pub(crate) fn narrowest(levels: f64) -> f64 {
-    let share = 0.5 * levels;
+    let share = 0.56 * levels;
     libm::cbrt((57.0 / share) * (57.0 / share))
 }
 
