@@ -231,9 +231,9 @@ impl Hidden {
     }
 }
 
-/// How far lines in place of curves may move a pixel's coverage, in levels: they are within [`inside::FLATNESS`] of curves as
-/// round as a pixel is wide, and of all others.
-const CURVES: f64 = 4.0;
+/// How far lines in place of curves may move a pixel's coverage, in levels: by their balance of areas they are within
+/// [`inside::FLATNESS`] of curves of half a pixel's radius and more.
+const CURVES: f64 = 2.0;
 
 #[cfg(test)]
 mod tests {

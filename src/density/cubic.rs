@@ -12,8 +12,8 @@ pub(super) fn weights(share: f64) -> [f32; 4] {
     .map(|weight| weight as f32)
 }
 
-/// The rows a penumbra radius for a tolerance of one level: at 12, four of a thousand shapes passed it by up to a quarter,
-/// where errors of chords, cubics and curves come together.
+/// The rows a penumbra radius for a tolerance of one level: at 12, 13 of 4,000 random shapes passed it, by up to
+/// a half, where errors of chords, cubics and curves come together. Fitted to shapes, no bound.
 const STEPS: f64 = 14.0;
 
 /// The rows a penumbra radius that keep the penumbra's ends within a tolerance: their error falls with the power of 1.5.
