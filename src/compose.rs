@@ -1,10 +1,10 @@
 //! Composing layered surfaces: who casts on whom, and how much.
 //!
 //! From the ground up each surface is a receiver: onto it fall the shadows of every surface above it, each projected on
-//! the receiver's own elevation. Opaque casters of one elevation are united before they are cast. Casters of different
-//! elevations hide parts of the light as if these had nothing to do with each other: their transmissions multiply, which
-//! is exact wherever at most one of them is neither 0 nor 1.
+//! the receiver's own elevation. Opaque casters of one elevation are united before they are cast; what casters of different
+//! elevations hide together is the union of what each hides of the light's disc ([`fusion`]).
 
+mod fusion;
 mod ground;
 #[cfg(feature = "raster")]
 mod raster;
@@ -16,18 +16,14 @@ pub use raster::Renderer;
 
 use glam::DVec2;
 
+use self::fusion::Cast;
+pub(crate) use self::fusion::Fusion;
+
 use crate::error::Result;
 use crate::light::Projection;
 use crate::scene::{Scene, Surface};
 use crate::shadow::Shadow;
 use crate::shape::Shape;
-
-/// One shadow on one receiver, and the part of the light that its casters hold back where they hide it.
-#[derive(Debug)]
-pub(crate) struct Cast {
-    pub(crate) shadow: Shadow,
-    pub(crate) weight: f64,
-}
 
 /// What a receiver is: its elevation and the box it lies in (scene units).
 pub(crate) struct Receiver {
@@ -72,19 +68,21 @@ impl Receiver {
 struct Casters<'a> {
     shapes: Vec<&'a Shape>,
     projection: Projection,
-    weight: f64,
+    strength: f64,
+    opacity: f64,
 }
 
 impl Casters<'_> {
     fn cast(&self) -> Cast {
         Cast {
             shadow: Shadow::project(&self.shapes, &self.projection),
-            weight: self.weight,
+            strength: self.strength,
+            opacity: self.opacity,
         }
     }
 }
 
-/// The shadows of the light on a receiver.
+/// The shadows of the light on a receiver. What they hold back is not yet weakened by the tone.
 pub(crate) fn key_casts(scene: &Scene, receiver: &Receiver) -> Result<Vec<Cast>> {
     Ok(key_casters(scene, receiver)?
         .iter()
@@ -149,13 +147,15 @@ fn casters<'a>(
             casters.push(Casters {
                 shapes,
                 projection,
-                weight: strength,
+                strength,
+                opacity: 1.0,
             });
         }
         casters.extend(translucent.into_iter().map(|surface| Casters {
             shapes: vec![surface.shape()],
             projection,
-            weight: strength * f64::from(surface.weight()),
+            strength,
+            opacity: f64::from(surface.weight()),
         }));
     }
     Ok(casters)

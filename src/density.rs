@@ -11,7 +11,7 @@ mod field;
 mod frame;
 pub(crate) mod grid;
 pub(crate) mod nine_patch;
-mod quadrature;
+pub(crate) mod quadrature;
 pub(crate) mod rounded;
 pub(crate) mod rows;
 mod sampling;

@@ -110,16 +110,20 @@ impl Hidden {
         self.seal();
     }
 
-    /// What is hidden of a band of the grid's rows, from `first` on.
-    #[cfg(feature = "rayon")]
-    pub(crate) fn band(&self, band: &Grid, first: u32) -> Self {
-        let mut hidden = Self::new(band);
-        let rows = first..first + band.height();
+    /// What is hidden of a window of the grid whose first pixel is at column and row `first`.
+    pub(crate) fn window(&self, window: &Grid, first: [u32; 2]) -> Self {
+        let mut hidden = Self::new(window);
+        let [left, top] = first;
+        let rows = top..top + window.height();
         let spans = self.spans.iter().filter(|span| rows.contains(&span.row));
-        hidden.spans.extend(spans.map(|span| Span {
-            row: span.row - first,
-            ..*span
-        }));
+        let cut = spans.map(|span| Span {
+            row: span.row - top,
+            start: span.start.max(left) - left,
+            end: span.end.clamp(left, left + window.width()) - left,
+        });
+        hidden
+            .spans
+            .extend(cut.filter(|span| span.start < span.end));
         hidden.seal();
         hidden
     }

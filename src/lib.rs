@@ -83,6 +83,7 @@
 //! The same input gives the same bits on every machine. A patch release may change densities by no more than the stated
 //! error of their method, and meshes in any way that keeps their tolerance: compare pictures, not vertices.
 
+mod apart;
 mod compose;
 #[cfg(any(feature = "lyon", feature = "kurbo", feature = "raster"))]
 mod convert;

@@ -90,7 +90,7 @@ fn in_bands(
                 let band = grid.band(first as u32, end as u32);
                 let hidden = options
                     .hidden
-                    .map(|hidden| hidden.band(&band, first as u32));
+                    .map(|hidden| hidden.window(&band, [0, first as u32]));
                 let options = PixelOptions {
                     hidden: hidden.as_ref(),
                     ..*options

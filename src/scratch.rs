@@ -4,6 +4,7 @@ use core::ops::Range;
 
 use fearless_simd::Level;
 
+use crate::compose::Fusion;
 use crate::density::circle::Profile;
 use crate::density::grid::GridScratch;
 use crate::density::nine_patch::NinePatchScratch;
@@ -24,6 +25,7 @@ pub struct Scratch {
     pub(crate) grid: GridScratch,
     pub(crate) circle: Profile,
     pub(crate) inside: Inside,
+    pub(crate) fusion: Fusion,
     /// The columns of a row that are to be drawn.
     pub(crate) wanted: Vec<Range<i64>>,
 }
@@ -50,6 +52,7 @@ impl Scratch {
             grid: GridScratch::default(),
             circle: Profile::default(),
             inside: Inside::default(),
+            fusion: Fusion::default(),
             wanted: Vec::new(),
         }
     }

@@ -9,6 +9,7 @@ use std::sync::OnceLock;
 
 use glam::DVec2;
 
+use crate::apart::overlapping;
 use crate::density::blend::{A8, Ink, Layout, Rgba8};
 use crate::density::rounded::Rounded;
 use crate::density::{self, Each, PixelOptions};
@@ -188,7 +189,7 @@ impl Shadow {
     }
 
     /// A box that holds the outline, in scene units.
-    fn hull(&self) -> Option<(DVec2, DVec2)> {
+    pub(crate) fn hull(&self) -> Option<(DVec2, DVec2)> {
         let curved = self.curved.iter().flatten().filter_map(Shape::hull);
         let hulls = self.fixed.bounds().into_iter().chain(curved);
         hulls.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
@@ -436,7 +437,7 @@ impl PixelOptions<'_> {
         }
     }
 
-    fn layout(&self, grid: &Grid) -> Layout {
+    pub(crate) fn layout(&self, grid: &Grid) -> Layout {
         Layout {
             stride: grid.stride(),
             dither: self.dither.then(|| grid.pattern()),
@@ -482,37 +483,6 @@ fn unite(outlines: &[Outline], flatness: f64) -> Outline {
             resolve(&polygons, Winding::Rule(crate::path::FillRule::NonZero))
         }
     }
-}
-
-/// Sorts boxed items into groups, each apart from all others: a group's boxes overlap or touch in a chain.
-fn overlapping<T>(mut boxed: Vec<(DVec2, DVec2, T)>) -> Vec<Vec<T>> {
-    let mut open: Vec<(DVec2, DVec2, Vec<T>)> = Vec::new();
-    boxed.sort_by(|a, b| {
-        let key = |s: &(DVec2, DVec2, T)| (s.0.x, s.0.y);
-        key(a)
-            .partial_cmp(&key(b))
-            .unwrap_or(core::cmp::Ordering::Equal)
-    });
-    let mut groups = Vec::new();
-    for (min, max, item) in boxed {
-        let (mut min, mut max, mut group) = (min, max, vec![item]);
-        let mut index = 0;
-        while index < open.len() {
-            if open[index].1.x < min.x {
-                groups.push(open.swap_remove(index).2);
-            } else if open[index].0.y <= max.y && open[index].1.y >= min.y {
-                let (other_min, other_max, members) = open.swap_remove(index);
-                // The grown box may meet groups that were passed over.
-                (min, max, index) = (min.min(other_min), max.max(other_max), 0);
-                group.splice(0..0, members);
-            } else {
-                index += 1;
-            }
-        }
-        open.push((min, max, group));
-    }
-    groups.extend(open.into_iter().map(|(_, _, group)| group));
-    groups
 }
 
 #[cfg(test)]

@@ -1,6 +1,8 @@
 //! The shadows of all casters together on the ground.
 
-use super::{Cast, Receiver, key_casts};
+use super::fusion::{self, Cast, groups};
+use super::{Receiver, key_casts};
+use crate::density::blend::{Ink, Rgba8};
 use crate::density::{self, Each, PixelOptions};
 use crate::error::Result;
 use crate::grid::Grid;
@@ -87,19 +89,14 @@ impl GroundShadows<'_> {
         let (width, height) = (self.grid.width(), self.grid.height());
         (map.width, map.height) = (width, height);
         map.densities.clear();
-        // While the casters are gone through, what they let pass.
-        map.densities.resize(width as usize * height as usize, 1.0);
-        for cast in &self.casts {
-            let weight = cast.weight as f32;
-            let mut sink = Each {
-                pixels: &mut map.densities,
-                stride: width as usize,
-                put: |passed: &mut f32, density: f32| *passed *= 1.0 - weight * density,
-            };
-            density::draw(&cast.shadow, &self.grid, options, scratch, &mut sink);
-        }
-        for passed in &mut map.densities {
-            *passed = 1.0 - *passed;
+        map.densities.resize(width as usize * height as usize, 0.0);
+        let mut sink = Each {
+            pixels: &mut map.densities,
+            stride: width as usize,
+            put: |pixel: &mut f32, density: f32| *pixel += density,
+        };
+        for group in groups(&self.casts) {
+            fusion::draw(&group, &self.grid, options, scratch, &mut sink);
         }
     }
 
@@ -114,10 +111,24 @@ impl GroundShadows<'_> {
         scratch: &mut Scratch,
     ) -> Result<()> {
         let key = self.scene.tone().key();
-        for cast in &self.casts {
-            let paint = Paint::new(Color::BLACK, key * cast.weight as f32)?;
-            cast.shadow
-                .blend_rgba8(&self.grid, pixels, &paint, options, scratch)?;
+        self.grid.check_buffer(pixels.len() / 4)?;
+        options.check(&self.grid)?;
+        for group in groups(&self.casts) {
+            // Alone, a cast needs no density between its method and the pixels.
+            let weight = match group.as_slice() {
+                [alone] => alone.weight() as f32,
+                _ => 1.0,
+            };
+            let mut sink = Rgba8 {
+                level: scratch.level(),
+                pixels,
+                layout: options.layout(&self.grid),
+                ink: Ink::new(&Paint::new(Color::BLACK, key * weight)?),
+            };
+            match group.as_slice() {
+                [alone] => density::draw(&alone.shadow, &self.grid, options, scratch, &mut sink),
+                _ => fusion::draw(&group, &self.grid, options, scratch, &mut sink),
+            }
         }
         Ok(())
     }

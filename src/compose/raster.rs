@@ -2,7 +2,8 @@
 
 use tiny_skia::{ColorU8, Pixmap};
 
-use super::{Cast, Receiver, ambient_casts, key_casts};
+use super::fusion::{self, Cast, groups};
+use super::{Receiver, ambient_casts, key_casts};
 use crate::density::{self, Each, PixelOptions};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
@@ -224,20 +225,13 @@ impl Renderer {
             hidden: Some(hidden),
             ..PixelOptions::default()
         };
-        for cast in casts {
-            let weight = cast.weight as f32;
-            let mut sink = Each {
-                pixels: passed,
-                stride: layer.grid.width() as usize,
-                put: |passed: &mut f32, density: f32| *passed *= 1.0 - weight * density,
-            };
-            density::draw(
-                &cast.shadow,
-                &layer.grid,
-                &options,
-                &mut self.scratch,
-                &mut sink,
-            );
+        let mut sink = Each {
+            pixels: passed,
+            stride: layer.grid.width() as usize,
+            put: |passed: &mut f32, held: f32| *passed *= 1.0 - held,
+        };
+        for group in groups(casts) {
+            fusion::draw(&group, &layer.grid, &options, &mut self.scratch, &mut sink);
         }
     }
 }

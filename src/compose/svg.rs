@@ -8,7 +8,8 @@ use std::borrow::Cow;
 
 use glam::DVec2;
 
-use super::{Cast, Receiver, ambient_casts, is_shaded, key_casts};
+use super::fusion::Cast;
+use super::{Receiver, ambient_casts, is_shaded, key_casts};
 use crate::density::{averaged_side, flatness};
 use crate::error::Result;
 use crate::scene::{Scene, Surface};
@@ -142,8 +143,8 @@ impl Writer<'_> {
         for cast in casts {
             svg.draw("<g shape-rendering=\"crispEdges\">");
             // What a faint shadow may be wrong by, the picture is wrong by less.
-            let tolerance = self.tolerance.divided(strength * cast.weight);
-            svg.draw_mesh(&self.averaged(&cast.shadow).mesh(tolerance), cast.weight);
+            let tolerance = self.tolerance.divided(strength * cast.weight());
+            svg.draw_mesh(&self.averaged(&cast.shadow).mesh(tolerance), cast.weight());
             svg.draw("</g>");
         }
         svg.draw("</g>");

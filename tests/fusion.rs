@@ -1,0 +1,185 @@
+//! What casters of several elevations hide together, against rays to the light's disc.
+
+#![expect(clippy::unwrap_used, reason = "a scene that is refused fails the test")]
+
+use penumbral::{Color, DensityMap, Light, PixelOptions, Scene, Scratch, Shape, Surface, Tone};
+
+/// Numbers from 0 to 1, the same ones every time.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn within(&mut self, low: f64, high: f64) -> f32 {
+        (low + (high - low) * self.next()) as f32
+    }
+}
+
+/// A rounded rectangle over the ground.
+struct Card {
+    corner: [f32; 2],
+    size: [f32; 2],
+    radius: f32,
+    elevation: f32,
+    opacity: f32,
+}
+
+impl Card {
+    fn surface(&self) -> Surface {
+        let ([x, y], [w, h]) = (self.corner, self.size);
+        let shape = Shape::rounded_rect(x, y, w, h, self.radius).unwrap();
+        Surface::new(shape, self.elevation).with_opacity(self.opacity)
+    }
+
+    fn covers(&self, point: [f64; 2]) -> bool {
+        let outside = [0, 1].map(|axis| {
+            let half = f64::from(self.size[axis]) / 2.0;
+            let middle = f64::from(self.corner[axis]) + half;
+            (point[axis] - middle).abs() - half + f64::from(self.radius)
+        });
+        let [x, y] = outside.map(|v| v.max(0.0));
+        x.max(y) == 0.0 || x.hypot(y) <= f64::from(self.radius)
+    }
+}
+
+const CANVAS: f32 = 160.0;
+const CENTER: [f64; 3] = [80.0, 40.0, 300.0];
+
+/// What rays from a point of the ground to 256 x 256 strata of the disc find held back.
+fn by_rays(cards: &[Card], point: [f64; 2], radius: f64, random: &mut Random) -> f64 {
+    const SIDE: u32 = 256;
+    let mut held = 0.0;
+    for stratum in 0..SIDE * SIDE {
+        let part =
+            |index: u32, random: &mut Random| (f64::from(index) + random.next()) / f64::from(SIDE);
+        let distance = radius * part(stratum / SIDE, random).sqrt();
+        let angle = core::f64::consts::TAU * part(stratum % SIDE, random);
+        let light = [
+            CENTER[0] + distance * angle.cos(),
+            CENTER[1] + distance * angle.sin(),
+        ];
+        let mut passed = 1.0;
+        for card in cards {
+            let share = f64::from(card.elevation) / CENTER[2];
+            let met = [0, 1].map(|axis| point[axis] + (light[axis] - point[axis]) * share);
+            if card.covers(met) {
+                passed *= 1.0 - f64::from(card.opacity);
+            }
+        }
+        held += 1.0 - passed;
+    }
+    held / f64::from(SIDE * SIDE)
+}
+
+#[test]
+fn stacks_hide_the_union_of_what_each_hides() {
+    let mut random = Random(7);
+    let (mut map, mut scratch) = (DensityMap::default(), Scratch::new());
+    let (mut worst, mut partial) = ([0.0_f64; 7], 0);
+    for index in 0..60 {
+        let count = 2 + index % 5;
+        let translucent = index % 3 == 2;
+        let light_radius = random.within(60.0, 300.0);
+        let cards: Vec<Card> = (0..count)
+            .map(|_| {
+                let size = [random.within(20.0, 80.0), random.within(12.0, 80.0)];
+                Card {
+                    corner: [random.within(20.0, 80.0), random.within(20.0, 80.0)],
+                    size,
+                    radius: random.within(0.0, f64::from(size[0].min(size[1])) / 2.0),
+                    elevation: random.within(4.0, 40.0),
+                    opacity: if translucent {
+                        random.within(0.2, 1.0)
+                    } else {
+                        1.0
+                    },
+                }
+            })
+            .collect();
+        let light = Light::new(CENTER.map(|v| v as f32), light_radius).unwrap();
+        let mut scene = Scene::new([CANVAS; 2], light).unwrap();
+        for card in &cards {
+            scene.push(card.surface()).unwrap();
+        }
+        let shadows = scene.ground_shadows().unwrap();
+        shadows.draw(&mut map, &PixelOptions::default(), &mut scratch);
+        for _ in 0..12 {
+            let at = [0; 2].map(|_| (random.next() * f64::from(CANVAS)) as usize);
+            let got = f64::from(map.densities()[at[1] * CANVAS as usize + at[0]]);
+            let point = at.map(|v| v as f64 + 0.5);
+            let expected = by_rays(&cards, point, f64::from(light_radius), &mut random);
+            partial += usize::from(expected > 0.02 && expected < 0.98);
+            let error = (got - expected).abs() * 255.0;
+            worst[count] = worst[count].max(error);
+            // The rays' own noise is below a quarter of a level.
+            assert!(
+                error < 1.25,
+                "stack {index} of {count}, pixel {at:?}: {error} levels"
+            );
+        }
+    }
+    println!(
+        "2 to 6 casters: worst {:?} levels, {partial} points partial",
+        &worst[2..]
+    );
+    assert!(partial > 250, "{partial}");
+}
+
+#[test]
+fn stacked_umbrae_are_as_dark_as_one() {
+    let scene = |elevations: &[f32]| {
+        let light = Light::new([100.0, 100.0, 600.0], 300.0).unwrap();
+        let mut scene = Scene::new([200.0, 200.0], light)
+            .unwrap()
+            .with_background(Color::WHITE)
+            .unwrap()
+            .with_tone(Tone::new(0.19, 0.0).unwrap());
+        for &elevation in elevations {
+            let card = Shape::rect(40.0, 40.0, 120.0, 120.0).unwrap();
+            scene.push(Surface::new(card, elevation)).unwrap();
+        }
+        scene
+    };
+    let shade = |elevations: &[f32]| {
+        let scene = scene(elevations);
+        let mut pixels = vec![255; 4 * 200 * 200];
+        let shadows = scene.ground_shadows().unwrap();
+        shadows
+            .blend_rgba8(&mut pixels, &PixelOptions::default(), &mut Scratch::new())
+            .unwrap();
+        pixels[4 * (100 * 200 + 100)]
+    };
+    // 255 (1 - 0.19), not 255 (1 - 0.19)² = 167.
+    assert_eq!(shade(&[8.0]), 207);
+    assert_eq!(shade(&[8.0, 16.0]), 207);
+    assert_eq!(shade(&[2.0, 8.0, 16.0]), 207);
+}
+
+#[test]
+fn a_scene_moved_by_whole_pixels_has_the_same_bits() {
+    let draw = |shift: f32| {
+        // All of this is exact in f32.
+        let light = Light::directional([0.25, 0.75], 1.125).unwrap();
+        let mut scene = Scene::new([240.0, 160.0], light).unwrap();
+        for (x, elevation) in [(40.25, 5.0), (60.5, 9.0), (75.75, 14.0)] {
+            let card = Shape::rounded_rect(x + shift, 40.25, 60.0, 50.0, 7.0).unwrap();
+            scene.push(Surface::new(card, elevation)).unwrap();
+        }
+        let mut map = DensityMap::default();
+        let shadows = scene.ground_shadows().unwrap();
+        shadows.draw(&mut map, &PixelOptions::default(), &mut Scratch::new());
+        map
+    };
+    let (here, there) = (draw(0.0), draw(37.0));
+    for row in 0..160 {
+        let part =
+            |map: &DensityMap, first: usize| map.densities()[row * 240 + first..][..200].to_vec();
+        assert_eq!(part(&here, 0), part(&there, 37), "row {row}");
+    }
+}
