@@ -15,6 +15,7 @@ pub(crate) mod quadrature;
 pub(crate) mod rounded;
 pub(crate) mod rows;
 mod sampling;
+pub(crate) mod tilted;
 
 use core::f64::consts::FRAC_PI_2;
 use core::ops::Range;

@@ -91,6 +91,12 @@ pub enum Error {
         /// How far the shadow would reach, scene units.
         extent: f64,
     },
+    /// Corners that are not of one plane.
+    #[error("the corners' elevations miss one plane by {}: the first and third must add up to the second and fourth", Shown(*bend))]
+    NotFlat {
+        /// The first and third elevation less the second and fourth, scene units.
+        bend: f64,
+    },
     /// A ground that something would be seen through.
     #[error("{field} has the alpha {alpha} of 255: give an opaque colour")]
     NotOpaque {

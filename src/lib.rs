@@ -53,6 +53,7 @@
 //! | `shape.rs`, `path.rs`, `svg_path.rs`, `convert.rs` | [`Shape`], [`Path`]: what casters look like, and where they come from |
 //! | `outline.rs`, `outline/` | loops of lines and arcs that never cross; fill rules; cutting to a box |
 //! | `shadow.rs` | [`Shadow`]: bounds, density at a point, coverage |
+//! | `pose.rs`, `tilted.rs` | [`Pose`], [`TiltedShadow`]: casters that are not parallel to the light |
 //! | `density.rs`, `density/` | densities: the closed form at points, and on pixels by a method a file; bytes |
 //! | `mesh.rs`, `mesh/` | [`ShadowMesh`]: tangents, triangulation, refinement, Gouraud rasterisation |
 //! | `plan.rs` | [`plan::choose`]: the cheapest method within a tolerance |
@@ -100,6 +101,7 @@ mod paint;
 mod parallel;
 mod path;
 pub mod plan;
+mod pose;
 mod scene;
 mod scratch;
 mod shadow;
@@ -107,6 +109,7 @@ mod shape;
 mod svg;
 #[cfg(feature = "svg-path")]
 mod svg_path;
+mod tilted;
 mod tolerance;
 mod tone;
 
@@ -122,10 +125,12 @@ pub use mesh::{MeshOptions, MeshVertex, Profile, ShadowMesh, meshes_to_svg};
 pub use nine_patch::{NinePatch, PatchPlace, ShadowKey};
 pub use paint::Paint;
 pub use path::{FillRule, Path};
+pub use pose::Pose;
 pub use scene::{Scene, Surface};
 pub use scratch::Scratch;
 pub use shadow::{Bounds, Shadow};
 pub use shape::{CornerRadii, Shape};
+pub use tilted::TiltedShadow;
 pub use tolerance::Tolerance;
 pub use tone::{Color, ParseColorError, Tone};
 

@@ -5,8 +5,10 @@ use core::borrow::Borrow;
 use glam::{DAffine2, DMat2, DVec2};
 
 use crate::error::{self, Error, MAX_COORDINATE, Result};
+use crate::pose::Pose;
 use crate::shadow::Shadow;
 use crate::shape::Shape;
+use crate::tilted::{Circle, LEAST_LIGHT, TiltedShadow};
 
 /// A uniform disc parallel to the ground, or the same disc moved away to infinity.
 ///
@@ -164,6 +166,42 @@ impl Light {
             return Ok(Shadow::empty());
         }
         Ok(Shadow::project(shapes, &projection))
+    }
+
+    /// The shadow of `shape` in a pose of its own on the plane at elevation `receiver` (scene units). What lies below the
+    /// receiver or above the light hides nothing, and may be all of it.
+    ///
+    /// # Errors
+    /// A receiver that is not finite, passes [`MAX_COORDINATE`], or is not below the light.
+    pub fn cast_posed(&self, shape: &Shape, pose: &Pose, receiver: f32) -> Result<TiltedShadow> {
+        let g = error::coordinate("receiver", f64::from(receiver))?;
+        match self.kind {
+            Kind::Disc { center, z, radius } => {
+                if g >= z {
+                    return Err(Error::CasterNotBelowLight {
+                        elevation: g,
+                        light_z: z,
+                    });
+                }
+                let radius = radius.max(z * LEAST_LIGHT);
+                Ok(TiltedShadow::project(shape, pose, g..z, |point| Circle {
+                    center: (z - g) * (point.truncate() - center) + (z - point.z) * center,
+                    scale: z - point.z,
+                    radius: radius * (point.z - g),
+                }))
+            }
+            Kind::Directional { offset, spread } => {
+                let spread = spread.max(LEAST_LIGHT);
+                let heights = g..f64::INFINITY;
+                Ok(TiltedShadow::project(shape, pose, heights, |point| {
+                    Circle {
+                        center: point.truncate() + offset * (point.z - g),
+                        scale: 1.0,
+                        radius: spread * (point.z - g),
+                    }
+                }))
+            }
+        }
     }
 
     /// By how much an outline is larger than its caster at `elevation`, seen on the plane at elevation `receiver`.

@@ -419,7 +419,7 @@ impl Shadow {
 }
 
 /// Sets the grid's pixels in a buffer.
-fn clear<T: Copy>(grid: &Grid, buffer: &mut [T], value: T) -> Result<()> {
+pub(crate) fn clear<T: Copy>(grid: &Grid, buffer: &mut [T], value: T) -> Result<()> {
     grid.check_buffer(buffer.len())?;
     for row in 0..grid.height() as usize {
         buffer[row * grid.stride()..][..grid.width() as usize].fill(value);

@@ -42,7 +42,7 @@ fn angle(a: DVec2, b: DVec2) -> f64 {
 }
 
 /// Twice the area that a line spans with the unit disc about the origin.
-fn of_line(from: DVec2, to: DVec2) -> f64 {
+pub(super) fn of_line(from: DVec2, to: DVec2) -> f64 {
     let length = (to - from).length();
     if length == 0.0 {
         return 0.0;

@@ -1,0 +1,213 @@
+//! `TiltedShadow`: the shadow of a caster that is not parallel to the light.
+//!
+//! Each of the caster's vertices is a projection circle of its own radius. Seen from a point of the receiver, the caster covers
+//! of the light's disc the polygon of the circles' centres in the unit of their radii, about the point.
+
+use core::ops::Range;
+
+use glam::{DVec2, DVec3};
+
+use crate::density::blend::{A8, Ink, Rgba8};
+use crate::density::{Each, PixelOptions, tilted};
+use crate::error::{MAX_COORDINATE, Result};
+use crate::grid::Grid;
+use crate::outline::Outline;
+use crate::paint::Paint;
+use crate::pose::Pose;
+use crate::scratch::Scratch;
+use crate::shadow::{Bounds, clear};
+use crate::shape::Shape;
+
+/// How far from a curve of a tilted caster its lines may be, in scene units.
+const FLATNESS: f64 = 5e-4;
+
+/// The radius that a point light is taken to have, against its height: its shadows are hard.
+pub(crate) const LEAST_LIGHT: f64 = 1e-7;
+
+/// A projection circle in homogeneous form, finite where the caster meets its receiver and where it meets the light's plane:
+/// its centre is `center / scale`, its radius `radius / scale`. All three are linear along a straight edge of the caster.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Circle {
+    pub(crate) center: DVec2,
+    pub(crate) scale: f64,
+    pub(crate) radius: f64,
+}
+
+impl Circle {
+    /// The caster's point on the light's unit disc as seen from a point of the receiver.
+    pub(crate) fn seen_from(&self, point: DVec2) -> DVec2 {
+        // So far away that only its direction counts.
+        const FAR: f64 = 1e-11;
+        let offset = self.center - self.scale * point;
+        let unit = self.radius.max(FAR * offset.abs().max_element());
+        if unit > 0.0 {
+            offset / unit
+        } else {
+            DVec2::ZERO
+        }
+    }
+
+    fn minus(&self, other: &Self) -> Self {
+        Self {
+            center: self.center - other.center,
+            scale: self.scale - other.scale,
+            radius: self.radius - other.radius,
+        }
+    }
+
+    /// The circle where a unit is `factor` and the origin at `base`, in new units.
+    pub(crate) fn placed(&self, factor: f64, base: DVec2) -> Self {
+        Self {
+            center: self.center * factor - self.scale * base,
+            scale: self.scale,
+            radius: self.radius * factor,
+        }
+    }
+}
+
+/// The shadow of a flat caster in any pose on one receiver, in closed form: the area of the light's disc that the caster hides.
+/// What lies below the receiver or above the light hides nothing.
+#[derive(Debug, Clone)]
+pub struct TiltedShadow {
+    /// The caster's vertices, loop after loop.
+    pub(crate) loops: Vec<Vec<Circle>>,
+    /// The circle of the caster's own origin, and how circles change along its x and y.
+    pub(crate) plane: [Circle; 3],
+}
+
+impl TiltedShadow {
+    /// The part of the caster with z in `heights`, each of its points through `circle`.
+    pub(crate) fn project(
+        shape: &Shape,
+        pose: &Pose,
+        heights: Range<f64>,
+        circle: impl Fn(DVec3) -> Circle,
+    ) -> Self {
+        let outline =
+            Outline::of_simple(shape).unwrap_or_else(|| Outline::of_flattened(shape, FLATNESS));
+        let polygons = outline.polygons(FLATNESS).into_iter().map(|polygon| {
+            let points: Vec<DVec3> = polygon.into_iter().map(|p| pose.place(p)).collect();
+            cut(&cut(&points, |p| p.z - heights.start), |p| {
+                heights.end - p.z
+            })
+        });
+        let at = |point: DVec2| circle(pose.place(point));
+        let origin = at(DVec2::ZERO);
+        Self {
+            loops: polygons
+                .filter(|points| points.len() > 2)
+                .map(|points| points.into_iter().map(&circle).collect())
+                .collect(),
+            plane: [
+                origin,
+                at(DVec2::X).minus(&origin),
+                at(DVec2::Y).minus(&origin),
+            ],
+        }
+    }
+
+    /// The smallest box that holds all projection circles, or none for an empty shadow: outside of it the density is 0. A
+    /// caster that reaches the light's plane shades without end: such a box ends at [`MAX_COORDINATE`].
+    #[must_use]
+    pub fn bounds(&self) -> Option<Bounds> {
+        let (min, max) = self.hull()?;
+        Some(Bounds::outwards(min, max))
+    }
+
+    pub(crate) fn hull(&self) -> Option<(DVec2, DVec2)> {
+        let far = DVec2::splat(MAX_COORDINATE);
+        let boxes = self.loops.iter().flatten().map(|circle| {
+            let scale = circle.scale.max(f64::MIN_POSITIVE);
+            let (center, radius) = (circle.center / scale, circle.radius / scale);
+            (
+                (center - radius).clamp(-far, far),
+                (center + radius).clamp(-far, far),
+            )
+        });
+        boxes.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+    }
+
+    /// The density at a point (x, y) of the receiver, 0 to 1, in closed form; curves of the caster are taken as lines within
+    /// 0.0005 scene units. A point that is not finite has density 0.
+    #[must_use]
+    pub fn density_at(&self, point: [f32; 2]) -> f64 {
+        let point = DVec2::new(f64::from(point[0]), f64::from(point[1]));
+        if !point.is_finite() {
+            return 0.0;
+        }
+        tilted::at_point(&self.loops, point)
+    }
+
+    /// As [`Shadow::fill_a8_with`](crate::Shadow::fill_a8_with), by the closed form whatever the options' tolerance and method.
+    ///
+    /// # Errors
+    /// A buffer shorter than the grid needs, and options for another grid.
+    pub fn fill_a8(&self, grid: &Grid, mask: &mut [u8], options: &PixelOptions<'_>) -> Result<()> {
+        clear(grid, mask, 0)?;
+        options.check(grid)?;
+        let layout = options.layout(grid);
+        tilted::fill(self, grid, options.hidden, &mut A8 { mask, layout });
+        Ok(())
+    }
+
+    /// As [`Shadow::fill_f32`](crate::Shadow::fill_f32), by the closed form whatever the options' tolerance and method.
+    ///
+    /// # Errors
+    /// A buffer shorter than the grid needs, and options for another grid.
+    pub fn fill_f32(
+        &self,
+        grid: &Grid,
+        densities: &mut [f32],
+        options: &PixelOptions<'_>,
+    ) -> Result<()> {
+        clear(grid, densities, 0.0)?;
+        options.check(grid)?;
+        let mut sink = Each {
+            pixels: densities,
+            stride: grid.stride(),
+            put: |pixel: &mut f32, density: f32| *pixel = density,
+        };
+        tilted::fill(self, grid, options.hidden, &mut sink);
+        Ok(())
+    }
+
+    /// As [`Shadow::blend_rgba8`](crate::Shadow::blend_rgba8), by the closed form whatever the options' tolerance and method.
+    ///
+    /// # Errors
+    /// A buffer shorter than the grid needs, and options for another grid.
+    pub fn blend_rgba8(
+        &self,
+        grid: &Grid,
+        pixels: &mut [u8],
+        paint: &Paint,
+        options: &PixelOptions<'_>,
+        scratch: &mut Scratch,
+    ) -> Result<()> {
+        grid.check_buffer(pixels.len() / 4)?;
+        options.check(grid)?;
+        let mut sink = Rgba8 {
+            level: scratch.level(),
+            pixels,
+            layout: options.layout(grid),
+            ink: Ink::new(paint),
+        };
+        tilted::fill(self, grid, options.hidden, &mut sink);
+        Ok(())
+    }
+}
+
+/// The part of a loop where `depth`, linear along its edges, is not negative.
+fn cut(points: &[DVec3], depth: impl Fn(&DVec3) -> f64) -> Vec<DVec3> {
+    let mut kept = Vec::with_capacity(points.len());
+    for (index, to) in points.iter().enumerate() {
+        let from = &points[(index + points.len() - 1) % points.len()];
+        let (a, b) = (depth(from), depth(to));
+        if (a < 0.0) != (b < 0.0) {
+            kept.push(from.lerp(*to, a / (a - b)));
+        }
+        if b >= 0.0 {
+            kept.push(*to);
+        }
+    }
+    kept
+}

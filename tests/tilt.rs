@@ -1,0 +1,176 @@
+//! Casters in any pose, against rays to the light's disc.
+
+#![expect(clippy::unwrap_used, reason = "a pose that is refused fails the test")]
+
+use core::f32::consts::PI;
+
+use penumbral::{Grid, Light, PixelOptions, Pose, Shape, TiltedShadow};
+
+const LIGHT: [f64; 3] = [80.0, 30.0, 300.0];
+const LIGHT_RADIUS: f64 = 120.0;
+const CARD: [f64; 4] = [50.0, 60.0, 60.0, 40.0];
+const PIVOT: [f64; 2] = [80.0, 80.0];
+
+fn light() -> Light {
+    Light::new(LIGHT.map(|v| v as f32), LIGHT_RADIUS as f32).unwrap()
+}
+
+fn card() -> Shape {
+    let [x, y, w, h] = CARD.map(|v| v as f32);
+    Shape::rect(x, y, w, h).unwrap()
+}
+
+fn flip(elevation: f64, degrees: f64, axis: [f64; 2]) -> TiltedShadow {
+    let pose = Pose::turned(
+        elevation as f32,
+        PIVOT.map(|v| v as f32),
+        axis.map(|v| v as f32),
+        (degrees as f32).to_radians(),
+    )
+    .unwrap();
+    light().cast_posed(&card(), &pose, 0.0).unwrap()
+}
+
+/// The part of 200 x 200 rays to the light's disc that the turned card stops above the ground.
+fn by_rays(elevation: f64, degrees: f64, axis: [f64; 2], point: [f64; 2]) -> f64 {
+    const SIDE: u32 = 200;
+    // As the pose takes it.
+    let angle = f64::from((degrees as f32).to_radians());
+    let length = axis[0].hypot(axis[1]);
+    let along = [axis[0] / length, axis[1] / length];
+    let across = [-along[1], along[0]];
+    // The card's plane: every point less the pivot is `s along + t (cos across + sin z)`.
+    let normal = [
+        -across[0] * angle.sin(),
+        -across[1] * angle.sin(),
+        angle.cos(),
+    ];
+    let mut stopped = 0;
+    for stratum in 0..SIDE * SIDE {
+        let part = |index: u32| (f64::from(index) + 0.5) / f64::from(SIDE);
+        let distance = LIGHT_RADIUS * part(stratum / SIDE).sqrt();
+        let turn = core::f64::consts::TAU * part(stratum % SIDE);
+        let to = [
+            LIGHT[0] + distance * turn.cos() - point[0],
+            LIGHT[1] + distance * turn.sin() - point[1],
+            LIGHT[2],
+        ];
+        let away = [PIVOT[0] - point[0], PIVOT[1] - point[1], elevation];
+        let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let share = dot(normal, away) / dot(normal, to);
+        if !(0.0..=1.0).contains(&share) {
+            continue;
+        }
+        let met = [0, 1, 2].map(|i| share * to[i] - away[i]);
+        let s = met[0] * along[0] + met[1] * along[1];
+        let flat = met[0] * across[0] + met[1] * across[1];
+        let t = flat * angle.cos() + met[2] * angle.sin();
+        let on_card = [0, 1].map(|i| PIVOT[i] + s * along[i] + t * across[i]);
+        let inside = [0, 1].map(|i| on_card[i] >= CARD[i] && on_card[i] <= CARD[i] + CARD[i + 2]);
+        stopped += u32::from(inside[0] && inside[1]);
+    }
+    f64::from(stopped) / f64::from(SIDE * SIDE)
+}
+
+#[test]
+fn a_level_pose_casts_as_the_shape_does() {
+    let tilted = flip(40.0, 0.0, [0.0, 1.0]);
+    let level = light().cast(&card(), 40.0, 0.0).unwrap();
+    for i in 0..40 {
+        let point = [i as f32 * 4.3, 90.0 + (i % 7) as f32 * 9.0];
+        let error = tilted.density_at(point) - level.density_at(point);
+        assert!(error.abs() < 1e-12, "{point:?}: {error:e}");
+    }
+}
+
+#[test]
+fn a_flipping_card_hides_what_rays_say() {
+    let mut worst: f64 = 0.0;
+    // Above the ground all the time; then half below it when upright.
+    for (elevation, axis) in [(40.0, [0.0, 1.0]), (10.0, [1.0, 0.4])] {
+        for degrees in (0..=180).step_by(12) {
+            let shadow = flip(elevation, f64::from(degrees), axis);
+            for i in 0..24 {
+                let point = [
+                    30.0 + f64::from(i % 6) * 21.0,
+                    45.0 + f64::from(i / 6) * 28.0,
+                ];
+                let expected = by_rays(elevation, f64::from(degrees), axis, point);
+                let got = shadow.density_at(point.map(|v| v as f32));
+                worst = worst.max((got - expected).abs() * 255.0);
+            }
+        }
+    }
+    println!("worst {worst:.3} levels");
+    // The rays' own error: they count, a ray an edge or so.
+    assert!(worst < 0.75, "{worst} levels");
+}
+
+fn drawn(shadow: &TiltedShadow, size: [u32; 2]) -> Vec<f32> {
+    let grid = Grid::new([0.0, 0.0], size, 1.0).unwrap();
+    let mut densities = vec![0.0; (size[0] * size[1]) as usize];
+    shadow
+        .fill_f32(&grid, &mut densities, &PixelOptions::default())
+        .unwrap();
+    densities
+}
+
+#[test]
+fn pixels_are_the_closed_form_through_the_whole_flip() {
+    for (elevation, axis) in [(60.0, [0.0, 1.0]), (55.0, [1.0, 0.7])] {
+        let mut before: Option<Vec<f32>> = None;
+        for degrees in 0..=180 {
+            let shadow = flip(elevation, f64::from(degrees), axis);
+            let densities = drawn(&shadow, [160, 140]);
+            // One of 23 pixels; the caster is 3 px of penumbra and more above the ground.
+            for (index, density) in densities.iter().enumerate().step_by(23) {
+                let point = [(index % 160) as f32 + 0.5, (index / 160) as f32 + 0.5];
+                let error = (f64::from(*density) - shadow.density_at(point)).abs();
+                assert!(error < 1e-6, "{degrees} degrees, {point:?}: {error:e}");
+            }
+            if let Some(before) = before {
+                let change = densities.iter().zip(&before).map(|(a, b)| (a - b).abs());
+                let most = change.fold(0.0, f32::max) * 255.0;
+                // A degree moves the card's ends by 0.6 px, where r is 8 px and more: 2 / (π r) of density a pixel.
+                assert!(most < 14.0, "{degrees} degrees: {most} levels");
+            }
+            before = Some(densities);
+        }
+    }
+}
+
+#[test]
+fn a_card_hinged_on_the_ground_is_antialiased_where_it_touches() {
+    // The hinge is the card's left side, at elevation 0.
+    let pose = Pose::turned(0.0, [50.3, 60.0], [0.0, 1.0], -PI / 5.0).unwrap();
+    let hinged = Shape::rect(50.3, 40.25, 60.0, 50.0).unwrap();
+    let shadow = light().cast_posed(&hinged, &pose, 0.0).unwrap();
+    let densities = drawn(&shadow, [160, 140]);
+    for row in 50..80 {
+        let at = |column: usize| f64::from(densities[row * 160 + column]);
+        // The outline's own left edge covers 0.7 of its pixel, however near to hard the shadow is there.
+        assert!((at(50) - 0.7).abs() < 0.02, "row {row}: {}", at(50));
+        assert!(
+            at(49) < 0.01 && at(52) > 0.99,
+            "row {row}: {} {}",
+            at(49),
+            at(52)
+        );
+    }
+}
+
+#[test]
+fn casters_below_the_ground_or_above_the_light_hide_nothing() {
+    let at = |elevation: f32| {
+        let pose = Pose::turned(elevation, [80.0, 80.0], [0.0, 1.0], 0.0).unwrap();
+        light().cast_posed(&card(), &pose, 0.0).unwrap()
+    };
+    assert!(at(-5.0).bounds().is_none());
+    assert!(at(300.5).bounds().is_none());
+    assert!(at(299.5).bounds().is_some());
+    // Through the light's plane: finite densities everywhere.
+    let through = flip(290.0, 60.0, [0.0, 1.0]);
+    for density in drawn(&through, [160, 140]) {
+        assert!((0.0..=1.0).contains(&density));
+    }
+}
