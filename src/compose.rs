@@ -4,28 +4,36 @@
 //! the receiver's own elevation. Opaque casters of one elevation are united before they are cast; what casters of different
 //! elevations hide together is the union of what each hides of the light's disc ([`fusion`]).
 
+mod caster;
+mod damage;
 mod fusion;
 mod ground;
+mod nearby;
 #[cfg(feature = "raster")]
 mod raster;
 mod svg;
 
-pub use ground::{DensityMap, GroundShadows};
-#[cfg(feature = "raster")]
-pub use raster::Renderer;
-
 use glam::DVec2;
 
-use self::fusion::Cast;
 pub(crate) use self::fusion::Fusion;
+pub use self::fusion::Overlap;
+pub use self::ground::{DensityMap, GroundShadows};
+#[cfg(feature = "raster")]
+pub use self::raster::Renderer;
 
+use self::caster::{AnyShadow, Cast};
+use self::nearby::Nearby;
+use crate::density::alpha::AlphaShadow;
 use crate::error::Result;
-use crate::light::Projection;
-use crate::scene::{Scene, Surface};
+use crate::light::{Light, Projection};
+use crate::pose::Pose;
+use crate::scene::{Form, Scene, Surface};
 use crate::shadow::Shadow;
 use crate::shape::Shape;
+use crate::tilted::TiltedShadow;
 
 /// What a receiver is: its elevation and the box it lies in (scene units).
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct Receiver {
     pub(crate) elevation: f32,
     pub(crate) min: DVec2,
@@ -42,9 +50,10 @@ impl Receiver {
         }
     }
 
-    /// A surface, as far as the canvas shows it, or none where that is nothing.
+    /// A surface, as far as the canvas shows it, or none where that is nothing. Seen from above a tilted surface is a receiver
+    /// of no one elevation: no shadow falls on it.
     pub(crate) fn surface(scene: &Scene, surface: &Surface) -> Option<Self> {
-        let (min, max) = surface.shape().hull()?;
+        let (min, max) = surface.hull()?;
         let ground = Self::ground(scene);
         let (min, max) = (min.max(ground.min), max.min(ground.max));
         (min.cmplt(max).all()).then_some(Self {
@@ -53,9 +62,196 @@ impl Receiver {
             max,
         })
     }
+}
 
-    fn meets(&self, shape: &Shape, projection: &Projection) -> bool {
-        let Some((min, max)) = shape.hull() else {
+/// What casts shadows: one of the lights, or the ambience. An ambient shadow is the caster's own outline, blurred by half its
+/// height over the receiver, and the weaker the higher it is, as Android has it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Source {
+    Light(Light),
+    Ambience,
+}
+
+impl Source {
+    /// The scene's sources, each with the strength of what it casts.
+    pub(crate) fn of(scene: &Scene) -> Vec<(Self, f32)> {
+        let lights = scene.lights().map(|(light, key)| (Self::Light(light), key));
+        let ambience = (Self::Ambience, scene.tone().ambient());
+        lights
+            .chain([ambience])
+            .filter(|(_, strength)| *strength > 0.0)
+            .collect()
+    }
+
+    fn projection(&self, elevation: f32, receiver: f32) -> Result<Projection> {
+        match self {
+            Self::Light(light) => light.projection(elevation, receiver),
+            Self::Ambience => {
+                let height = f64::from(elevation) - f64::from(receiver);
+                Ok(Projection::in_place(height / 2.0))
+            }
+        }
+    }
+
+    /// What of the source's strength is left to a caster's shadow: ambience fades over 128 units, as Android's does.
+    fn strength(&self, elevation: f32, receiver: f32) -> f64 {
+        match self {
+            Self::Light(_) => 1.0,
+            Self::Ambience => {
+                let height = f64::from(elevation) - f64::from(receiver);
+                1.0 / (1.0 + height.max(0.0) / 128.0)
+            }
+        }
+    }
+
+    fn cast_posed(&self, surface: &Surface, pose: &Pose, receiver: f32) -> Result<TiltedShadow> {
+        match self {
+            Self::Light(light) => light.cast_posed(surface.shape(), pose, receiver),
+            // A circle as wide as half its point's height.
+            Self::Ambience => {
+                Light::directional([0.0, 0.0], 0.5)?.cast_posed(surface.shape(), pose, receiver)
+            }
+        }
+    }
+}
+
+/// A scene's surfaces in their order, ready to be asked who casts on whom.
+#[derive(Debug)]
+pub(crate) struct Stage<'a> {
+    /// From the lowest to the highest, those of one elevation in the order they were added.
+    pub(crate) order: Vec<&'a Surface>,
+    /// For each source what casts where.
+    sources: Vec<(Source, f32, Nearby)>,
+}
+
+impl<'a> Stage<'a> {
+    pub(crate) fn new(scene: &'a Scene) -> Result<Self> {
+        Self::lit_by(scene, Source::of(scene))
+    }
+
+    /// Under the first light alone, of strength 1.
+    pub(crate) fn of_first_light(scene: &'a Scene) -> Result<Self> {
+        Self::lit_by(scene, vec![(Source::Light(*scene.light()), 1.0)])
+    }
+
+    fn lit_by(scene: &'a Scene, sources: Vec<(Source, f32)>) -> Result<Self> {
+        let order: Vec<&Surface> = scene
+            .paint_order()
+            .into_iter()
+            .map(|index| &scene.surfaces()[index])
+            .collect();
+        let sources = sources.into_iter().map(|(source, strength)| {
+            let reaches = order.iter().map(|surface| match surface.weight() {
+                0.0 => Ok(None),
+                _ => source.reach(surface),
+            });
+            let reaches: Result<Vec<_>> = reaches.collect();
+            Ok((
+                source,
+                strength,
+                Nearby::new(&Receiver::ground(scene), &reaches?),
+            ))
+        });
+        Ok(Self {
+            sources: sources.collect::<Result<_>>()?,
+            order,
+        })
+    }
+
+    /// The shadows on a receiver, for each source that casts any, and the source's strength.
+    pub(crate) fn casts(&self, receiver: &Receiver) -> Result<Vec<(f32, Vec<Cast>)>> {
+        let of_sources = self.sources.iter().map(|(source, strength, nearby)| {
+            let casters = self.casters(source, nearby, receiver)?;
+            let casts: Result<Vec<Cast>> = casters
+                .iter()
+                .map(|caster| caster.cast(source, receiver.elevation))
+                .collect();
+            Ok((*strength, casts?))
+        });
+        let of_sources: Result<Vec<_>> = of_sources.collect();
+        Ok(of_sources?
+            .into_iter()
+            .filter(|(_, casts)| !casts.is_empty())
+            .collect())
+    }
+
+    /// Whether any shadow may reach a receiver. No shadow is built for it.
+    pub(crate) fn is_shaded(&self, receiver: &Receiver) -> Result<bool> {
+        for (source, _, nearby) in &self.sources {
+            if !self.casters(source, nearby, receiver)?.is_empty() {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    fn casters(
+        &self,
+        source: &Source,
+        nearby: &Nearby,
+        receiver: &Receiver,
+    ) -> Result<Vec<Casters<'a>>> {
+        let mut casters = Vec::new();
+        let (posed, level): (Vec<&Surface>, Vec<&Surface>) = nearby
+            .of(receiver)
+            .into_iter()
+            .map(|index| self.order[index])
+            .partition(|surface| matches!(surface.form(), Form::Posed(_)));
+        let above: Vec<&Surface> = level
+            .into_iter()
+            .filter(|surface| surface.elevation() > receiver.elevation)
+            .collect();
+        for level in above.chunk_by(|a, b| a.elevation() == b.elevation()) {
+            let elevation = level[0].elevation();
+            let projection = source.projection(elevation, receiver.elevation)?;
+            let meeting = level
+                .iter()
+                .copied()
+                .filter(|surface| receiver.meets(surface, &projection));
+            let (united, single): (Vec<&Surface>, Vec<&Surface>) = meeting
+                .partition(|surface| surface.is_opaque() && matches!(surface.form(), Form::Level));
+            if !united.is_empty() {
+                casters.push(Casters {
+                    surfaces: united,
+                    elevation,
+                    opacity: 1.0,
+                });
+            }
+            casters.extend(single.into_iter().map(Casters::alone));
+        }
+        let is_above = |surface: &&Surface| surface.highest() > f64::from(receiver.elevation);
+        casters.extend(posed.into_iter().filter(is_above).map(Casters::alone));
+        Ok(casters)
+    }
+}
+
+impl Source {
+    /// A box that holds the surface and its shadows on every receiver below it. Both ends of a shadow's way from the caster to the
+    /// ground are in it, and between them it moves and grows evenly.
+    pub(crate) fn reach(&self, surface: &Surface) -> Result<Option<(DVec2, DVec2)>> {
+        let Some((min, max)) = surface.hull() else {
+            return Ok(None);
+        };
+        let on_ground = match surface.form() {
+            Form::Posed(pose) => self.cast_posed(surface, pose, 0.0)?.hull(),
+            _ => {
+                let projection = self.projection(surface.elevation(), 0.0)?;
+                let place = |p: DVec2| p * projection.scale + projection.offset;
+                Some((
+                    place(min) - projection.radius,
+                    place(max) + projection.radius,
+                ))
+            }
+        };
+        Ok(Some(on_ground.map_or((min, max), |ground| {
+            (min.min(ground.0), max.max(ground.1))
+        })))
+    }
+}
+
+impl Receiver {
+    fn meets(&self, surface: &Surface, projection: &Projection) -> bool {
+        let Some((min, max)) = surface.hull() else {
             return false;
         };
         let min = min * projection.scale + projection.offset - projection.radius;
@@ -66,97 +262,39 @@ impl Receiver {
 
 /// Surfaces that cast one shadow on a receiver.
 struct Casters<'a> {
-    shapes: Vec<&'a Shape>,
-    projection: Projection,
-    strength: f64,
-    opacity: f64,
+    surfaces: Vec<&'a Surface>,
+    elevation: f32,
+    opacity: f32,
 }
 
-impl Casters<'_> {
-    fn cast(&self) -> Cast {
-        Cast {
-            shadow: Shadow::project(&self.shapes, &self.projection),
-            strength: self.strength,
-            opacity: self.opacity,
+impl<'a> Casters<'a> {
+    fn alone(surface: &'a Surface) -> Self {
+        Self {
+            surfaces: vec![surface],
+            elevation: surface.elevation(),
+            opacity: surface.weight(),
         }
     }
-}
 
-/// The shadows of the light on a receiver. What they hold back is not yet weakened by the tone.
-pub(crate) fn key_casts(scene: &Scene, receiver: &Receiver) -> Result<Vec<Cast>> {
-    Ok(key_casters(scene, receiver)?
-        .iter()
-        .map(Casters::cast)
-        .collect())
-}
-
-/// The ambient shadows on a receiver: the caster's own outline, blurred by half its height over the receiver, and the
-/// weaker the higher it is, as Android has them. Their weight holds the tone's strength.
-pub(crate) fn ambient_casts(scene: &Scene, receiver: &Receiver) -> Result<Vec<Cast>> {
-    Ok(ambient_casters(scene, receiver)?
-        .iter()
-        .map(Casters::cast)
-        .collect())
-}
-
-/// Whether any shadow may reach a receiver. No shadow is built for it.
-pub(crate) fn is_shaded(scene: &Scene, receiver: &Receiver) -> Result<bool> {
-    Ok(!key_casters(scene, receiver)?.is_empty() || !ambient_casters(scene, receiver)?.is_empty())
-}
-
-fn key_casters<'a>(scene: &'a Scene, receiver: &Receiver) -> Result<Vec<Casters<'a>>> {
-    casters(scene, receiver, |elevation| {
-        Ok((
-            scene.light().projection(elevation, receiver.elevation)?,
-            1.0,
-        ))
-    })
-}
-
-fn ambient_casters<'a>(scene: &'a Scene, receiver: &Receiver) -> Result<Vec<Casters<'a>>> {
-    let tone = scene.tone();
-    if tone.ambient() == 0.0 {
-        return Ok(Vec::new());
+    fn cast(&self, source: &Source, receiver: f32) -> Result<Cast> {
+        let shadow = match (self.surfaces[0], self.surfaces[0].form()) {
+            (surface, Form::Posed(pose)) => {
+                AnyShadow::Tilted(source.cast_posed(surface, pose, receiver)?)
+            }
+            (_, Form::Image(image, place)) => {
+                let projection = source.projection(self.elevation, receiver)?;
+                AnyShadow::Alpha(AlphaShadow::project(image, place, &projection))
+            }
+            (_, Form::Level) => {
+                let projection = source.projection(self.elevation, receiver)?;
+                let shapes: Vec<&Shape> = self.surfaces.iter().map(|s| s.shape()).collect();
+                AnyShadow::Level(Shadow::project(&shapes, &projection))
+            }
+        };
+        Ok(Cast {
+            shadow,
+            strength: source.strength(self.elevation, receiver),
+            opacity: f64::from(self.opacity),
+        })
     }
-    casters(scene, receiver, |elevation| {
-        let height = f64::from(elevation) - f64::from(receiver.elevation);
-        Ok((Projection::in_place(height / 2.0), tone.ambient_at(height)))
-    })
-}
-
-fn casters<'a>(
-    scene: &'a Scene,
-    receiver: &Receiver,
-    project: impl Fn(f32) -> Result<(Projection, f64)>,
-) -> Result<Vec<Casters<'a>>> {
-    let mut casters = Vec::new();
-    let above: Vec<&Surface> = scene
-        .paint_order()
-        .into_iter()
-        .map(|index| &scene.surfaces()[index])
-        .filter(|surface| surface.elevation() > receiver.elevation && surface.weight() > 0.0)
-        .collect();
-    for level in above.chunk_by(|a, b| a.elevation() == b.elevation()) {
-        let (projection, strength) = project(level[0].elevation())?;
-        let (opaque, translucent): (Vec<&Surface>, Vec<&Surface>) = level
-            .iter()
-            .filter(|surface| receiver.meets(surface.shape(), &projection))
-            .partition(|surface| surface.is_opaque());
-        let shapes: Vec<&Shape> = opaque.iter().map(|surface| surface.shape()).collect();
-        if !shapes.is_empty() {
-            casters.push(Casters {
-                shapes,
-                projection,
-                strength,
-                opacity: 1.0,
-            });
-        }
-        casters.extend(translucent.into_iter().map(|surface| Casters {
-            shapes: vec![surface.shape()],
-            projection,
-            strength,
-            opacity: f64::from(surface.weight()),
-        }));
-    }
-    Ok(casters)
 }

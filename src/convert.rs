@@ -5,7 +5,6 @@ use crate::path::Path;
 
 #[cfg(feature = "lyon")]
 impl From<&lyon::path::Path> for Path {
-    /// Open contours are closed, as in every fill.
     fn from(source: &lyon::path::Path) -> Self {
         use lyon::path::Event;
         let mut path = Self::new();
@@ -17,7 +16,8 @@ impl From<&lyon::path::Path> for Path {
                 Event::Cubic {
                     ctrl1, ctrl2, to, ..
                 } => path.cubic_to(ctrl1.to_array(), ctrl2.to_array(), to.to_array()),
-                Event::End { .. } => path.close(),
+                Event::End { close: true, .. } => path.close(),
+                Event::End { close: false, .. } => &mut path,
             };
         }
         path
@@ -26,7 +26,7 @@ impl From<&lyon::path::Path> for Path {
 
 #[cfg(feature = "kurbo")]
 impl From<&kurbo::BezPath> for Path {
-    /// Open contours are closed, as in every fill. Coordinates keep their double precision.
+    /// Coordinates keep their double precision.
     fn from(source: &kurbo::BezPath) -> Self {
         use glam::DVec2;
         use kurbo::PathEl;
@@ -53,7 +53,6 @@ impl From<&kurbo::BezPath> for Path {
 
 #[cfg(feature = "raster")]
 impl From<&tiny_skia::Path> for Path {
-    /// Open contours are closed, as in every fill.
     fn from(source: &tiny_skia::Path) -> Self {
         use tiny_skia::PathSegment;
         let point = |p: tiny_skia::Point| [p.x, p.y];
@@ -97,7 +96,7 @@ mod tests {
         lyon.begin(at(2.0, 2.0));
         lyon.line_to(at(4.0, 2.0));
         lyon.line_to(at(2.0, 4.0));
-        lyon.end(false);
+        lyon.end(true);
         assert_eq!(Path::from(&lyon.build()), ours);
 
         let mut kurbo = kurbo::BezPath::new();

@@ -1,5 +1,6 @@
 //! Densities: at a point, and on a grid of pixels by one method a file.
 
+pub(crate) mod alpha;
 mod area;
 pub(crate) mod blend;
 mod chords;

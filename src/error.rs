@@ -97,6 +97,21 @@ pub enum Error {
         /// The first and third elevation less the second and fourth, scene units.
         bend: f64,
     },
+    /// What an SVG picture of a scene cannot hold.
+    #[error("{what} cannot be written as SVG: write a PNG picture")]
+    NotInSvg {
+        /// What of the scene.
+        what: &'static str,
+    },
+    /// A tilted surface or an image inside a clip.
+    #[error("a tilted surface and an image are not clipped: put them outside of the clipped group")]
+    NotClipped,
+    /// A stroke that cannot be followed.
+    #[error("the stroke cannot be drawn: {reason}")]
+    Stroke {
+        /// What was wrong with it.
+        reason: String,
+    },
     /// A ground that something would be seen through.
     #[error("{field} has the alpha {alpha} of 255: give an opaque colour")]
     NotOpaque {

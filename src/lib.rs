@@ -53,11 +53,12 @@
 //! | `shape.rs`, `path.rs`, `svg_path.rs`, `convert.rs` | [`Shape`], [`Path`]: what casters look like, and where they come from |
 //! | `outline.rs`, `outline/` | loops of lines and arcs that never cross; fill rules; cutting to a box |
 //! | `shadow.rs` | [`Shadow`]: bounds, density at a point, coverage |
+//! | `image.rs` | [`Image`]: casters with alpha |
 //! | `pose.rs`, `tilted.rs` | [`Pose`], [`TiltedShadow`]: casters that are not parallel to the light |
 //! | `density.rs`, `density/` | densities: the closed form at points, and on pixels by a method a file; bytes |
 //! | `mesh.rs`, `mesh/` | [`ShadowMesh`]: tangents, triangulation, refinement, Gouraud rasterisation |
 //! | `plan.rs` | [`plan::choose`]: the cheapest method within a tolerance |
-//! | `scene.rs`, `scene/json.rs` | [`Scene`], [`Surface`], and their JSON format |
+//! | `scene.rs`, `scene/` | [`Scene`], [`Surface`], [`Group`], and their JSON format |
 //! | `tolerance.rs` | [`Tolerance`]: how wrong a shadow may be |
 //! | `tone.rs` | [`Tone`], [`Color`]: how density becomes paint |
 //! | `compose.rs`, `compose/` | who casts on whom; pictures and SVG |
@@ -92,6 +93,7 @@ mod density;
 mod error;
 mod grid;
 mod hidden;
+mod image;
 mod light;
 mod mesh;
 mod nine_patch;
@@ -115,24 +117,25 @@ mod tone;
 
 #[cfg(feature = "raster")]
 pub use compose::Renderer;
-pub use compose::{DensityMap, GroundShadows};
+pub use compose::{DensityMap, GroundShadows, Overlap};
 pub use density::PixelOptions;
 pub use error::{Error, MAX_COORDINATE, MAX_PIXELS, MAX_SCENE_LENGTH, MAX_SEGMENTS, Result};
 pub use grid::Grid;
 pub use hidden::Hidden;
+pub use image::Image;
 pub use light::Light;
 pub use mesh::{MeshOptions, MeshVertex, Profile, ShadowMesh, meshes_to_svg};
 pub use nine_patch::{NinePatch, PatchPlace, ShadowKey};
 pub use paint::Paint;
 pub use path::{FillRule, Path};
 pub use pose::Pose;
-pub use scene::{Scene, Surface};
+pub use scene::{Group, Scene, Surface};
 pub use scratch::Scratch;
 pub use shadow::{Bounds, Shadow};
-pub use shape::{CornerRadii, Shape};
+pub use shape::{CornerRadii, LineCap, LineJoin, Shape, Stroke};
 pub use tilted::TiltedShadow;
 pub use tolerance::Tolerance;
-pub use tone::{Color, ParseColorError, Tone};
+pub use tone::{Blending, Color, ParseColorError, Tone};
 
 /// The README's code, compiled with the documentation's.
 #[cfg(doctest)]

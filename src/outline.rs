@@ -14,7 +14,7 @@ use libm::{atan2, cos, sin};
 
 pub(crate) use chords::Fineness;
 pub(crate) use clip::clip_to_box;
-pub(crate) use resolve::{Winding, resolve, resolve_loops};
+pub(crate) use resolve::{Winding, intersect_loops, resolve, resolve_loops};
 
 use crate::path::{EllipseArc, Segment, arc_steps};
 use crate::shape::{Cover, Shape};

@@ -45,6 +45,8 @@ pub struct Path {
 pub(crate) struct Contour {
     pub(crate) start: DVec2,
     pub(crate) segments: Vec<Segment>,
+    /// Whether it was closed by word: a fill closes it anyway, a stroke does not.
+    pub(crate) closed: bool,
 }
 
 /// A piece of a contour, from where the last one ended.
@@ -122,7 +124,10 @@ impl Path {
 
     /// Closes the contour by a line to its start, where the next one begins unless `move_to` says otherwise.
     pub fn close(&mut self) -> &mut Self {
-        self.next = self.contours.last().map(|contour| contour.start);
+        if let Some(contour) = self.contours.last_mut() {
+            contour.closed = true;
+            self.next = Some(contour.start);
+        }
         self
     }
 
@@ -130,6 +135,7 @@ impl Path {
         self.contours.push(Contour {
             start,
             segments: Vec::new(),
+            closed: false,
         });
         self.next = None;
     }
@@ -264,6 +270,7 @@ impl Contour {
         Self {
             start: map(self.start),
             segments,
+            closed: self.closed,
         }
     }
 
@@ -293,7 +300,7 @@ impl Segment {
         }
     }
 
-    fn flatten(&self, from: DVec2, flatness: f64, out: &mut Vec<DVec2>) {
+    pub(crate) fn flatten(&self, from: DVec2, flatness: f64, out: &mut Vec<DVec2>) {
         let first = out.len();
         let to = self.end();
         let backwards = (to.x, to.y) < (from.x, from.y);

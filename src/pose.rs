@@ -4,6 +4,11 @@ use glam::{DVec2, DVec3};
 use libm::{cos, sin};
 
 use crate::error::{self, Error, Result};
+use crate::outline::{Winding, resolve};
+use crate::path::FillRule;
+use crate::shadow::Shadow;
+use crate::shape::Shape;
+use crate::tilted::{Circle, TiltedShadow};
 
 /// A flat shape's place in space: an affine map of its own plane. The point (x, y) of the shape is at
 /// `origin + x * along_x + y * along_y`, with z the elevation above the ground, all in scene units.
@@ -107,6 +112,30 @@ impl Pose {
             along_x: DVec3::new(1.0, 0.0, rise_x),
             along_y: DVec3::new(0.0, 1.0, rise_y),
         })
+    }
+
+    /// The same, higher by `height`.
+    pub(crate) fn raised(&self, height: f64) -> Self {
+        Self {
+            origin: self.origin + DVec3::Z * height,
+            ..*self
+        }
+    }
+
+    /// What a shape covers seen from above, but for what is below the ground.
+    pub(crate) fn cover(&self, shape: &Shape) -> Shadow {
+        // Straight down, by a light that is a point.
+        let loops = TiltedShadow::project(shape, self, 0.0..f64::INFINITY, |point| Circle {
+            center: point.truncate(),
+            scale: 1.0,
+            radius: 0.0,
+        });
+        let polygons: Vec<Vec<DVec2>> = loops
+            .loops
+            .iter()
+            .map(|circles| circles.iter().map(|circle| circle.center).collect())
+            .collect();
+        Shadow::of_outline(resolve(&polygons, Winding::Rule(FillRule::NonZero)))
     }
 
     /// Where a point of the shape is.

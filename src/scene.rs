@@ -1,13 +1,18 @@
 //! Scene: surfaces over a ground, under one light.
 
+mod group;
 #[cfg(feature = "scene")]
 mod json;
+mod surface;
 
+pub use self::group::Group;
+pub(crate) use self::surface::Form;
+pub use self::surface::Surface;
+
+use crate::compose::Overlap;
 use crate::error::{self, Error, MAX_PIXELS, Result};
 use crate::grid::Grid;
-use crate::light::{Light, Projection};
-use crate::shadow::Shadow;
-use crate::shape::Shape;
+use crate::light::Light;
 use crate::tone::{Color, Tone};
 
 /// A canvas at elevation 0, the ground, with surfaces above it and a light over all.
@@ -26,94 +31,11 @@ pub struct Scene {
     background: Color,
     scale: f32,
     light: Light,
+    /// The lights besides, and the strengths of their shadows.
+    more_lights: Vec<(Light, f32)>,
     tone: Tone,
+    overlap: Overlap,
     surfaces: Vec<Surface>,
-}
-
-/// A flat shape at an elevation: it casts shadows on what is below and receives them from what is above.
-#[derive(Debug, Clone)]
-pub struct Surface {
-    shape: Shape,
-    elevation: f32,
-    opacity: f32,
-    fill: Color,
-    name: Option<String>,
-}
-
-impl Surface {
-    /// An opaque white surface; its elevation above the ground is in scene units.
-    #[must_use]
-    pub fn new(shape: Shape, elevation: f32) -> Self {
-        Self {
-            shape,
-            elevation,
-            opacity: 1.0,
-            fill: Color::WHITE,
-            name: None,
-        }
-    }
-
-    /// The same with another fill.
-    #[must_use]
-    pub fn with_fill(mut self, fill: Color) -> Self {
-        self.fill = fill;
-        self
-    }
-
-    /// The same with another opacity, 0 to 1; it multiplies the fill's own.
-    #[must_use]
-    pub fn with_opacity(mut self, opacity: f32) -> Self {
-        self.opacity = opacity;
-        self
-    }
-
-    /// The same with a name, for messages.
-    #[must_use]
-    pub fn with_name(mut self, name: impl Into<String>) -> Self {
-        self.name = Some(name.into());
-        self
-    }
-
-    /// The shape.
-    #[must_use]
-    pub fn shape(&self) -> &Shape {
-        &self.shape
-    }
-
-    /// The elevation above the ground, scene units.
-    #[must_use]
-    pub fn elevation(&self) -> f32 {
-        self.elevation
-    }
-
-    /// The fill; its alpha and the opacity multiply.
-    #[must_use]
-    pub fn fill(&self) -> Color {
-        self.fill
-    }
-
-    /// The name, if it has one.
-    #[must_use]
-    pub fn name(&self) -> Option<&str> {
-        self.name.as_deref()
-    }
-
-    /// How much of what is behind it the surface hides, and of the light: opacity times the fill's alpha, 0 to 1.
-    #[must_use]
-    pub fn weight(&self) -> f32 {
-        self.opacity * f32::from(self.fill.a) / 255.0
-    }
-
-    /// The surface's own coverage: its hard shadow on itself.
-    pub(crate) fn cover(&self) -> Shadow {
-        Shadow::project(&[self.shape()], &Projection::in_place(0.0))
-    }
-
-    /// Whether nothing is seen through it.
-    #[must_use]
-    pub fn is_opaque(&self) -> bool {
-        self.weight() >= 1.0
-    }
 }
 
 impl Scene {
@@ -130,7 +52,9 @@ impl Scene {
             background: Color::rgb(0xfa, 0xfa, 0xfa),
             scale: 1.0,
             light,
+            more_lights: Vec::new(),
             tone: Tone::default(),
+            overlap: Overlap::default(),
             surfaces: Vec::new(),
         };
         scene.picture_size()?;
@@ -170,17 +94,52 @@ impl Scene {
         self
     }
 
+    /// The same with another way to put shadows of several elevations together.
+    #[must_use]
+    pub fn with_overlap(mut self, overlap: Overlap) -> Self {
+        self.overlap = overlap;
+        self
+    }
+
+    /// Adds a light whose shadows are of strength `key` (0 to 1) where it is wholly hidden; the first light's strength is the
+    /// tone's. Each light's shadows darken what the others leave.
+    ///
+    /// # Errors
+    /// A strength that is not from 0 to 1, and a surface of the scene that the light cannot cast.
+    pub fn push_light(&mut self, light: Light, key: f32) -> Result<()> {
+        error::within("key", f64::from(key), 0.0, 1.0)?;
+        for surface in &self.surfaces {
+            check(&light, surface)?;
+        }
+        self.more_lights.push((light, key));
+        Ok(())
+    }
+
     /// Adds a surface. Surfaces paint by elevation, those of one elevation in the order they were added.
     ///
     /// # Errors
-    /// An elevation below 0 or not below the light, an opacity not from 0 to 1, a caster so near the light that its shadow
+    /// An elevation below 0 or not below a light, an opacity not from 0 to 1, a caster so near a light that its shadow
     /// passes [`MAX_COORDINATE`](crate::MAX_COORDINATE).
     pub fn push(&mut self, surface: Surface) -> Result<()> {
-        error::within("opacity", f64::from(surface.opacity), 0.0, 1.0)?;
-        let projection = self.light.projection(surface.elevation, 0.0)?;
-        projection.check_reach(&surface.shape, surface.elevation)?;
+        error::within("opacity", f64::from(surface.opacity()), 0.0, 1.0)?;
+        for (light, _) in self.lights() {
+            check(&light, &surface)?;
+        }
         self.surfaces.push(surface);
         Ok(())
+    }
+
+    /// Adds what is left of a group's surfaces, or none of them where one is refused.
+    ///
+    /// # Errors
+    /// As [`Scene::push`] and [`Surface::clipped`], and groups nested too deep.
+    pub fn push_group(&mut self, group: &Group) -> Result<()> {
+        let before = self.surfaces.len();
+        let pushed = group.flatten(0, 0.0, &mut Vec::new(), &mut |surface| self.push(surface));
+        if pushed.is_err() {
+            self.surfaces.truncate(before);
+        }
+        pushed
     }
 
     /// Width and height, scene units.
@@ -201,10 +160,37 @@ impl Scene {
         self.scale
     }
 
-    /// The light.
+    /// The first light.
     #[must_use]
     pub fn light(&self) -> &Light {
         &self.light
+    }
+
+    /// All lights, and the strength (0 to 1) of each one's shadows.
+    pub fn lights(&self) -> impl Iterator<Item = (Light, f32)> {
+        let more = self.more_lights.iter().copied();
+        core::iter::once((self.light, self.tone.key())).chain(more)
+    }
+
+    /// How shadows of several elevations are put together.
+    #[must_use]
+    pub fn overlap(&self) -> Overlap {
+        self.overlap
+    }
+
+    /// Whether all but the surfaces is the same.
+    pub(crate) fn is_lit_as(&self, other: &Self) -> bool {
+        let all = |scene: &Self| {
+            (
+                scene.canvas,
+                scene.background,
+                scene.scale,
+                scene.light,
+                scene.tone,
+                scene.overlap,
+            )
+        };
+        all(self) == all(other) && self.more_lights == other.more_lights
     }
 
     /// How density becomes paint.
@@ -253,16 +239,29 @@ impl Scene {
         let mut order: Vec<usize> = (0..self.surfaces.len()).collect();
         order.sort_by(|&a, &b| {
             self.surfaces[a]
-                .elevation
-                .total_cmp(&self.surfaces[b].elevation)
+                .elevation()
+                .total_cmp(&self.surfaces[b].elevation())
         });
         order
+    }
+}
+
+/// Refuses a surface that a light cannot cast on the ground.
+fn check(light: &Light, surface: &Surface) -> Result<()> {
+    match surface.form() {
+        // What is below the ground or above the light hides nothing.
+        Form::Posed(pose) => light.cast_posed(surface.shape(), pose, 0.0).map(|_| ()),
+        Form::Level | Form::Image(..) => {
+            let projection = light.projection(surface.elevation(), 0.0)?;
+            projection.check_reach(surface.shape(), surface.elevation())
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shape::Shape;
 
     #[test]
     fn decimal_scales_give_whole_pictures() {

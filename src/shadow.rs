@@ -40,6 +40,12 @@ pub struct Shadow {
     parts: Vec<Shadow>,
 }
 
+/// What parts of a shadow are made of.
+enum Piece {
+    Loop(Vec<Edge>),
+    Shapes(Vec<Shape>),
+}
+
 /// How many edges an outline is drawn as, how long they are together and how large its box, in scene units.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Census {
@@ -118,45 +124,62 @@ impl Shadow {
         shadow
     }
 
+    /// The hard shadow of an outline on its own plane.
+    pub(crate) fn of_outline(fixed: Outline) -> Self {
+        let mut shadow = Self {
+            fixed,
+            ..Self::default()
+        };
+        shadow.find_parts();
+        shadow
+    }
+
     /// Loops whose shadows are apart are drawn by what suits each best.
     fn find_parts(&mut self) {
         self.rounded = None;
         self.parts.clear();
-        if !self.curved.is_empty() {
-            return;
+        if self.curved.is_empty() {
+            self.rounded = Rounded::of(&self.fixed);
         }
-        self.rounded = Rounded::of(&self.fixed);
         // No pixel is to see two parts: their densities would be rounded twice. A narrow penumbra is averaged over pixels.
         let reach = if self.radius < 3.0 {
             self.radius + 1.0
         } else {
             self.radius
         };
-        let boxed = self.fixed.loops.iter().filter_map(|edges| {
+        let fixed = self.fixed.loops.iter().filter_map(|edges| {
             let outline = Outline {
                 loops: vec![edges.clone()],
             };
             let (min, max) = outline.bounds()?;
-            Some((min - reach, max + reach, outline))
+            Some((min - reach, max + reach, Piece::Loop(edges.clone())))
         });
-        let groups = overlapping(boxed.collect());
+        let curved = self.curved.iter().filter_map(|shapes| {
+            let hulls = shapes.iter().filter_map(Shape::hull);
+            let (min, max) = hulls.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
+            Some((min - reach, max + reach, Piece::Shapes(shapes.clone())))
+        });
+        let groups = overlapping(fixed.chain(curved).collect());
         if groups.len() < 2 {
             return;
         }
         self.parts = groups
             .into_iter()
             .map(|group| {
-                let loops = group
-                    .into_iter()
-                    .flat_map(|outline| outline.loops)
-                    .collect();
-                let fixed = Outline { loops };
-                Self {
+                let mut part = Self {
                     radius: self.radius,
-                    rounded: Rounded::of(&fixed),
-                    fixed,
                     ..Self::default()
+                };
+                for piece in group {
+                    match piece {
+                        Piece::Loop(edges) => part.fixed.loops.push(edges),
+                        Piece::Shapes(shapes) => part.curved.push(shapes),
+                    }
                 }
+                if part.curved.is_empty() {
+                    part.rounded = Rounded::of(&part.fixed);
+                }
+                part
             })
             .collect();
     }

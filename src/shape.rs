@@ -1,6 +1,10 @@
 //! Shapes: what a caster looks like on its own plane.
 
+mod clipped;
 mod simple;
+mod stroke;
+
+pub use self::stroke::{LineCap, LineJoin, Stroke};
 
 use core::f64::consts::{FRAC_PI_2, PI};
 
@@ -138,6 +142,7 @@ impl Shape {
         Ok(Self::simple(Contour {
             start: center - u,
             segments: vec![half(-PI, center + u), half(0.0, center - u)],
+            closed: true,
         }))
     }
 
@@ -313,7 +318,11 @@ fn rounded_rect_contour(min: DVec2, size: DVec2, [tl, tr, br, bl]: [DVec2; 4]) -
         }
         from = after;
     }
-    Contour { start, segments }
+    Contour {
+        start,
+        segments,
+        closed: true,
+    }
 }
 
 #[cfg(test)]

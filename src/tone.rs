@@ -67,25 +67,40 @@ impl fmt::Display for Color {
     }
 }
 
-/// How density becomes paint: black of strength `key` where the light is wholly hidden, and an ambient shadow of
-/// strength `ambient` round each surface that fades as the surface rises. Strengths are from 0 to 1.
+/// How density becomes paint: a colour, by default black, of strength `key` where the light is wholly hidden, and an ambient
+/// shadow of strength `ambient` round each surface that fades as the surface rises. Strengths are from 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tone {
     key: f32,
     ambient: f32,
+    color: Color,
+    blending: Blending,
+}
+
+/// In what a shadow's colour and what is below are mixed, and a surface's edge with what is around it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Blending {
+    /// In sRGB's own numbers, as nearly all toolkits do.
+    #[default]
+    Srgb,
+    /// In amounts of light (IEC 61966-2-1), as physics does.
+    Linear,
 }
 
 impl Tone {
     /// Android's strengths (AOSP, `core/res/res/values/dimens.xml`): key 0.19, ambient 0.039.
-    pub const ANDROID: Self = Self {
-        key: 0.19,
-        ambient: 0.039,
-    };
+    pub const ANDROID: Self = Self::black(0.19, 0.039);
     /// Flutter's strengths: key 0.25, ambient 0.039.
-    pub const FLUTTER: Self = Self {
-        key: 0.25,
-        ambient: 0.039,
-    };
+    pub const FLUTTER: Self = Self::black(0.25, 0.039);
+
+    const fn black(key: f32, ambient: f32) -> Self {
+        Self {
+            key,
+            ambient,
+            color: Color::BLACK,
+            blending: Blending::Srgb,
+        }
+    }
 
     /// A tone of its own.
     ///
@@ -94,7 +109,21 @@ impl Tone {
     pub fn new(key: f32, ambient: f32) -> Result<Self> {
         error::within("key", f64::from(key), 0.0, 1.0)?;
         error::within("ambient", f64::from(ambient), 0.0, 1.0)?;
-        Ok(Self { key, ambient })
+        Ok(Self::black(key, ambient))
+    }
+
+    /// The same with shadows of another colour; its alpha is not looked at.
+    #[must_use]
+    pub fn with_color(mut self, color: Color) -> Self {
+        self.color = color;
+        self
+    }
+
+    /// The same with another way to blend.
+    #[must_use]
+    pub fn with_blending(mut self, blending: Blending) -> Self {
+        self.blending = blending;
+        self
     }
 
     /// The strength of the light's own shadow, 0 to 1.
@@ -109,11 +138,16 @@ impl Tone {
         self.ambient
     }
 
-    /// The strength of the ambient shadow of a caster `height` above its receiver, as Android has it:
-    /// ambient / (1 + height / 128).
+    /// The colour of shadows.
     #[must_use]
-    pub fn ambient_at(&self, height: f64) -> f64 {
-        f64::from(self.ambient) / (1.0 + height / 128.0)
+    pub fn color(&self) -> Color {
+        self.color
+    }
+
+    /// In what colours are mixed.
+    #[must_use]
+    pub fn blending(&self) -> Blending {
+        self.blending
     }
 }
 

@@ -8,43 +8,43 @@
 mod chords;
 
 use core::ops::Range;
+use std::borrow::Cow;
 
 use glam::DVec2;
 
 use self::chords::{BLOCK, Chords, Occluder};
+use super::caster::{AnyShadow, Cast};
 use crate::apart::overlapping;
-use crate::density::{self, Each, PixelOptions, Sink, averaged_side, flatness, quadrature};
+use crate::density::{Each, PixelOptions, Sink, averaged_side, flatness, quadrature};
 use crate::grid::Grid;
 use crate::scratch::Scratch;
-use crate::shadow::Shadow;
+use crate::tilted::Circle;
 
-/// One shadow on one receiver, and what of the light is held back where its casters hide it: `strength` by those that are
-/// opaque, and of the rest a part, their `opacity`.
-#[derive(Debug)]
-pub(crate) struct Cast {
-    pub(crate) shadow: Shadow,
-    pub(crate) strength: f64,
-    pub(crate) opacity: f64,
+/// What to do where casters of several elevations hide the light from one point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Overlap {
+    /// They hide the union of what each hides of the light's disc: no part of the light is taken away twice.
+    #[default]
+    Union,
+    /// Each darkens what the others left, as toolkits do that draw shadow over shadow: stacked cards are too dark.
+    SourceOver,
 }
 
-impl Cast {
-    /// What is held back where the shadow is densest.
-    pub(crate) fn weight(&self) -> f64 {
-        self.strength * self.opacity
-    }
-}
-
-/// Casts whose shadows may overlap, from the strongest to the weakest; alone if there is but one.
-pub(crate) fn groups(casts: &[Cast]) -> Vec<Vec<&Cast>> {
-    let boxed = casts.iter().filter_map(|cast| {
-        let (min, max) = cast.shadow.hull()?;
-        let reach = cast.shadow.radius();
-        Some((min - reach, max + reach, cast))
+/// Casts whose shadows may overlap, from the strongest to the weakest; alone if there is but one. What is drawn over the others
+/// whatever it hides is alone, too: an image's rays are stopped here and there.
+pub(super) fn groups(casts: &[Cast], overlap: Overlap) -> Vec<Vec<&Cast>> {
+    let is_alone =
+        |cast: &&Cast| overlap == Overlap::SourceOver || matches!(cast.shadow, AnyShadow::Alpha(_));
+    let (alone, together): (Vec<&Cast>, Vec<&Cast>) = casts.iter().partition(is_alone);
+    let boxed = together.into_iter().filter_map(|cast| {
+        let (min, max) = cast.shadow.reach(1.0)?;
+        Some((min, max, cast))
     });
     let mut groups = overlapping(boxed.collect());
     for group in &mut groups {
         group.sort_by(|a, b| b.strength.total_cmp(&a.strength));
     }
+    groups.extend(alone.into_iter().map(|cast| vec![cast]));
     groups
 }
 
@@ -74,13 +74,20 @@ impl Pixel {
     };
 }
 
-/// A cast as pixels see it, from the casts' common origin on.
+/// A cast as pixels see it: its box in pixels, and what of it its chords need.
 struct Member {
-    occluder: Occluder,
     min: DVec2,
     max: DVec2,
     strength: f32,
     opacity: f32,
+    kind: Kind,
+}
+
+enum Kind {
+    /// Of one radius.
+    Level(Occluder),
+    /// Of many radii.
+    Tilted(Vec<Vec<Circle>>),
 }
 
 /// Gives `sink` what a group of casts hold back of the light at each pixel of the grid that is not hidden.
@@ -105,17 +112,16 @@ impl Fusion {
         scratch: &mut Scratch,
         sink: &mut dyn Sink,
     ) {
-        let Some(frame) = Frame::new(group, grid) else {
+        let scale = grid.pixels_per_unit();
+        let Some([columns, rows]) = seen_pixels(group, grid) else {
             return;
         };
-        let [columns, rows] = frame.seen.clone();
         let width = columns.len();
         self.pixels.clear();
         self.pixels.resize(width * rows.len(), Pixel::LIT);
-        let window = grid.window([columns.start, rows.start], [columns.end, rows.end]);
-        let hidden = options
-            .hidden
-            .map(|hidden| hidden.window(&window, [columns.start, rows.start]));
+        let first = [columns.start, rows.start];
+        let window = grid.window(first, [columns.end, rows.end]);
+        let hidden = options.hidden.map(|hidden| hidden.window(&window, first));
         let options = PixelOptions {
             hidden: hidden.as_ref(),
             ..*options
@@ -134,11 +140,21 @@ impl Fusion {
                     }
                 },
             };
-            density::draw(&cast.shadow, &window, &options, scratch, &mut pass);
+            cast.shadow.draw(&window, &options, scratch, &mut pass);
         }
-        let members = frame.members(group);
+        let members = match group {
+            [_] => Vec::new(),
+            several => several
+                .iter()
+                .filter_map(|cast| Member::new(cast, scale))
+                .collect(),
+        };
         for row in 0..rows.len() {
-            self.mend(&frame, &members, row);
+            if members.len() > 1 {
+                let pixels = &mut self.pixels[row * width..][..width];
+                let start = window.corner() + DVec2::new(0.0, row as f64);
+                self.meet.mend(&members, start, pixels);
+            }
             let pixels = &self.pixels[row * width..][..width];
             self.row.clear();
             self.row.extend(pixels.iter().map(|pixel| pixel.held));
@@ -153,95 +169,63 @@ impl Fusion {
             }
         }
     }
+}
 
-    /// Mends the pixels of a row that several casts hide a part of the disc from.
-    fn mend(&mut self, frame: &Frame, members: &[Member], row: usize) {
-        let width = frame.seen[0].len();
-        let pixels = &mut self.pixels[row * width..][..width];
-        let mut start = 0;
-        while let Some(next) = pixels[start..].iter().position(|pixel| pixel.partial > 1) {
-            let column = frame.first[0] + (start + next) as i64;
-            let block = column.div_euclid(BLOCK as i64) * BLOCK as i64;
-            let [first, end] = [block, block + BLOCK as i64]
-                .map(|edge| (edge - frame.first[0]).clamp(0, width as i64) as usize);
-            let corner =
-                DVec2::new(block as f64, (frame.first[1] + row as i64) as f64) + frame.phase;
-            let near = members.iter().filter(|member| {
-                member
-                    .min
-                    .cmplt(corner + DVec2::new(BLOCK as f64, 1.0))
-                    .all()
-                    && member.max.cmpgt(corner).all()
-            });
-            let near: Vec<&Member> = near.collect();
-            let mends = self.meet.mends(&near, corner);
-            for (index, pixel) in pixels[first..end].iter_mut().enumerate() {
-                if pixel.partial > 1 {
-                    let lane = frame.first[0] + (first + index) as i64 - block;
-                    pixel.held = (pixel.held + mends[lane as usize]).clamp(0.0, 1.0);
-                }
+/// The columns and rows of the grid that any of the casts may reach.
+fn seen_pixels(group: &[&Cast], grid: &Grid) -> Option<[Range<u32>; 2]> {
+    let scale = grid.pixels_per_unit();
+    let boxes = group.iter().filter_map(|cast| cast.shadow.reach(scale));
+    let (min, max) = boxes.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
+    let seen = [0, 1].map(|axis| {
+        let end = f64::from([grid.width(), grid.height()][axis]);
+        let on_grid = |v: f64| (v - grid.corner()[axis]).clamp(0.0, end) as u32;
+        on_grid(min[axis].floor())..on_grid(max[axis].ceil() + 1.0)
+    });
+    (!seen.iter().any(Range::is_empty)).then_some(seen)
+}
+
+impl Member {
+    fn new(cast: &Cast, scale: f64) -> Option<Self> {
+        let (min, max) = cast.shadow.reach(scale)?;
+        let kind = match &cast.shadow {
+            AnyShadow::Level(shadow) => {
+                let radius = shadow.radius();
+                let flat = flatness(FLATNESS, radius, 1.0 / scale);
+                let polygons = shadow.outline(flat).polygons(flat);
+                let radius = (radius * scale).max(LEAST_RADIUS);
+                Kind::Level(Occluder::new(&polygons, scale, radius))
             }
-            start = end;
-        }
-    }
-}
-
-/// Where the casts of a group lie among the pixels of a grid.
-struct Frame {
-    /// Pixels from the scene's origin to the casts' own.
-    base: DVec2,
-    scale: f64,
-    /// The grid's columns and rows that any of the casts may reach.
-    seen: [Range<u32>; 2],
-    /// The first of them in the casts' own pixels, and where in one of these it begins.
-    first: [i64; 2],
-    phase: DVec2,
-}
-
-impl Frame {
-    fn new(group: &[&Cast], grid: &Grid) -> Option<Self> {
-        let scale = grid.pixels_per_unit();
-        let boxes = group.iter().filter_map(|cast| reach(&cast.shadow, scale));
-        let (min, max) = boxes.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
-        let base = min.floor();
-        let seen = [0, 1].map(|axis| {
-            let end = [grid.width(), grid.height()][axis];
-            let on_grid = |v: f64| (v - grid.corner()[axis]).clamp(0.0, f64::from(end)) as u32;
-            on_grid(min[axis].floor())..on_grid(max[axis].ceil() + 1.0)
-        });
-        if seen.iter().any(Range::is_empty) {
-            return None;
-        }
-        let corner = grid.corner() - base;
-        let whole = corner.floor();
+            AnyShadow::Tilted(shadow) => {
+                let place = |circle: &Circle| circle.placed(scale, DVec2::ZERO);
+                let loops = shadow.loops.iter();
+                Kind::Tilted(
+                    loops
+                        .map(|circles| circles.iter().map(place).collect())
+                        .collect(),
+                )
+            }
+            AnyShadow::Alpha(_) => return None,
+        };
         Some(Self {
-            base,
-            scale,
-            first: [0, 1].map(|axis| whole[axis] as i64 + i64::from(seen[axis].start)),
-            seen,
-            phase: corner - whole,
+            min,
+            max,
+            strength: cast.strength as f32,
+            opacity: cast.opacity as f32,
+            kind,
         })
     }
 
-    fn members(&self, group: &[&Cast]) -> Vec<Member> {
-        let place = |p: DVec2| p * self.scale - self.base;
-        let member = |cast: &&Cast| {
-            let (min, max) = reach(&cast.shadow, self.scale)?;
-            let radius = cast.shadow.radius();
-            let flat = flatness(FLATNESS, radius, 1.0 / self.scale);
-            let mut polygons = cast.shadow.outline(flat).polygons(flat);
-            for point in polygons.iter_mut().flatten() {
-                *point = place(*point);
+    /// Whether the pixel that begins at `corner` may see it.
+    fn meets(&self, corner: DVec2) -> bool {
+        let meets_box = self.min.cmplt(corner + 1.0).all() && self.max.cmpgt(corner).all();
+        match &self.kind {
+            // Of casters that are drawn as one those far away are not to matter.
+            Kind::Level(occluder) => {
+                let reach = occluder.radius + averaged_side(occluder.radius) / 2.0;
+                meets_box && occluder.is_near(corner, reach)
             }
-            Some(Member {
-                occluder: Occluder::new(&polygons, (radius * self.scale).max(LEAST_RADIUS)),
-                min: min - self.base,
-                max: max - self.base,
-                strength: cast.strength as f32,
-                opacity: cast.opacity as f32,
-            })
-        };
-        group.iter().filter_map(member).collect()
+            Kind::Tilted(_) => meets_box,
+        }
     }
 }
 
@@ -250,14 +234,6 @@ const FLATNESS: f64 = 0.05;
 
 /// The disc of a hard shadow, in pixels: next to the pixel's square it is a point.
 const LEAST_RADIUS: f64 = 1e-3;
-
-/// The box of the pixels that see a shadow, in pixels.
-fn reach(shadow: &Shadow, scale: f64) -> Option<(DVec2, DVec2)> {
-    let (min, max) = shadow.hull()?;
-    let radius = shadow.radius() * scale;
-    let reach = radius + averaged_side(radius) / 2.0;
-    Some((min * scale - reach, max * scale + reach))
-}
 
 /// What members hold back together where they hide these parts of the light one by one, and these are independent.
 fn held<'a>(members: impl IntoIterator<Item = &'a &'a Member>, hidden: &[f32]) -> f32 {
@@ -282,44 +258,78 @@ struct Meet {
 }
 
 impl Meet {
-    /// By how much members hold back more than their densities alone tell, for the pixels of a block of a row whose first one
-    /// begins at `corner`.
+    /// Mends the pixels of a row, the first of which begins at `start`, from which several members hide a part of the disc.
+    fn mend(&mut self, members: &[Member], start: DVec2, pixels: &mut [Pixel]) {
+        let mut index = 0;
+        while let Some(next) = pixels[index..].iter().position(|pixel| pixel.partial > 1) {
+            index += next;
+            let corner = start + DVec2::new(index as f64, 0.0);
+            let near: Vec<&Member> = members
+                .iter()
+                .filter(|member| member.meets(corner))
+                .collect();
+            let is_tilted = |member: &&Member| matches!(member.kind, Kind::Tilted(_));
+            let most = if near.iter().any(is_tilted) { 1 } else { BLOCK };
+            // As far as the same members are near, so that it does not matter where a picture begins.
+            let rest = pixels[index..].iter().take(most).enumerate();
+            let count = rest
+                .take_while(|(lane, pixel)| {
+                    let at = corner + DVec2::new(*lane as f64, 0.0);
+                    pixel.partial > 1
+                        && members.iter().filter(|member| member.meets(at)).count() == near.len()
+                        && near.iter().all(|member| member.meets(at))
+                })
+                .count();
+            let mends = self.mends(&near, corner);
+            for (pixel, mend) in pixels[index..index + count].iter_mut().zip(mends) {
+                pixel.held = (pixel.held + mend).clamp(0.0, 1.0);
+            }
+            index += count;
+        }
+    }
+
+    /// By how much members hold back more than their densities alone tell, for a row of pixels whose first one begins at
+    /// `corner`.
     fn mends(&mut self, members: &[&Member], corner: DVec2) -> [f32; BLOCK] {
-        let radius = members
-            .iter()
-            .map(|member| member.occluder.radius)
-            .fold(f64::MAX, f64::min);
+        let radii = members.iter().filter_map(|member| match &member.kind {
+            Kind::Level(occluder) => Some(occluder.radius),
+            Kind::Tilted(_) => None,
+        });
+        let radius = radii.fold(f64::MAX, f64::min);
         let side = averaged_side(radius);
         let mut mends = [0.0; BLOCK];
         let middle = corner + 0.5;
         if side == 0.0 {
-            self.place(members, corner.x, middle.y);
-            self.add(members, 0.5, 1.0, &mut mends);
+            self.place(members, middle);
+            self.add(members, 0.0, 1.0, &mut mends);
             return mends;
         }
         let mut placed = f64::NAN;
         for (point, weight) in quadrature::square(radius) {
             if point.y != placed {
                 placed = point.y;
-                self.place(members, corner.x, middle.y + point.y * side);
+                self.place(members, middle + DVec2::new(0.0, point.y * side));
             }
-            self.add(
-                members,
-                (0.5 + point.x * side) as f32,
-                weight as f32,
-                &mut mends,
-            );
+            self.add(members, point.x * side, weight as f32, &mut mends);
         }
         mends
     }
 
-    fn place(&mut self, members: &[&Member], x: f64, y: f64) {
-        let occluders = members.iter().map(|member| &member.occluder);
-        self.chords.place(occluders, x, y);
+    /// Finds the chords of the points from `at` on.
+    fn place(&mut self, members: &[&Member], at: DVec2) {
+        let seen: Vec<(Cow<'_, Occluder>, DVec2)> = members
+            .iter()
+            .map(|member| match &member.kind {
+                Kind::Level(occluder) => (Cow::Borrowed(occluder), at),
+                Kind::Tilted(loops) => (Cow::Owned(Occluder::seen_from(at, loops)), DVec2::ZERO),
+            })
+            .collect();
+        self.chords
+            .place(seen.iter().map(|(occluder, at)| (occluder.as_ref(), *at)));
     }
 
-    /// Adds what is to be mended at the block's points `offset` behind whole pixels.
-    fn add(&mut self, members: &[&Member], offset: f32, weight: f32, mends: &mut [f32; BLOCK]) {
+    /// Adds what is to be mended at the points that are whole pixels and `offset` behind the first.
+    fn add(&mut self, members: &[&Member], offset: f64, weight: f32, mends: &mut [f32; BLOCK]) {
         self.densities.resize(members.len(), [0.0; BLOCK]);
         for (index, densities) in self.densities.iter_mut().enumerate() {
             self.chords.density(index, offset, densities);
@@ -348,7 +358,7 @@ impl Meet {
                     *mend += weight * cross * covariance;
                 }
                 _ => {
-                    let x = lane as f32 + offset;
+                    let x = lane as f64 + offset;
                     let together = self.chords.held(x, |hidden| held(members, hidden));
                     *mend += weight * (together - held(members, &self.hidden));
                 }
@@ -356,7 +366,7 @@ impl Meet {
         }
     }
 
-    fn shared(&mut self, pair: [usize; 2], offset: f32) -> &[f32; BLOCK] {
+    fn shared(&mut self, pair: [usize; 2], offset: f64) -> &[f32; BLOCK] {
         let known = self.shared.iter().position(|(of, _)| *of == pair);
         let index = known.unwrap_or_else(|| {
             let mut shared = [0.0; BLOCK];

@@ -1,14 +1,15 @@
 //! The shadows of all casters together on the ground.
 
-use super::fusion::{self, Cast, groups};
-use super::{Receiver, key_casts};
+use super::caster::Cast;
+use super::fusion::{self, groups};
+use super::{Receiver, Stage};
 use crate::density::blend::{Ink, Rgba8};
-use crate::density::{self, Each, PixelOptions};
+use crate::density::{Each, PixelOptions};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::hidden::Hidden;
 use crate::paint::Paint;
-use crate::scene::Scene;
+use crate::scene::{Form, Scene};
 use crate::scratch::Scratch;
 use crate::shape::Shape;
 use crate::tone::Color;
@@ -48,7 +49,7 @@ impl DensityMap {
     }
 }
 
-/// The shadows that a scene's surfaces cast on its ground, projected and ready to be drawn.
+/// The shadows that a scene's surfaces cast on its ground under its first light, projected and ready to be drawn.
 #[derive(Debug)]
 pub struct GroundShadows<'a> {
     scene: &'a Scene,
@@ -62,10 +63,12 @@ impl Scene {
     /// # Errors
     /// None that the scene's constructors let pass.
     pub fn ground_shadows(&self) -> Result<GroundShadows<'_>> {
+        let stage = Stage::of_first_light(self)?;
+        let casts = stage.casts(&Receiver::ground(self))?;
         Ok(GroundShadows {
             scene: self,
             grid: self.grid()?,
-            casts: key_casts(self, &Receiver::ground(self))?,
+            casts: casts.into_iter().flat_map(|(_, casts)| casts).collect(),
         })
     }
 }
@@ -77,9 +80,13 @@ impl GroundShadows<'_> {
         &self.grid
     }
 
-    /// Hides the pixels under the scene's opaque surfaces.
+    /// Hides the pixels under the scene's opaque surfaces but the tilted ones.
     pub fn hide_covered(&self, hidden: &mut Hidden, scratch: &mut Scratch) {
-        let opaque = self.scene.surfaces().iter().filter(|s| s.is_opaque());
+        let opaque = self
+            .scene
+            .surfaces()
+            .iter()
+            .filter(|surface| surface.is_opaque() && matches!(surface.form(), Form::Level));
         hidden.reset(&self.grid);
         hidden.add_all(opaque.map(|surface| -> &Shape { surface.shape() }), scratch);
     }
@@ -93,14 +100,14 @@ impl GroundShadows<'_> {
         let mut sink = Each {
             pixels: &mut map.densities,
             stride: width as usize,
-            put: |pixel: &mut f32, density: f32| *pixel += density,
+            put: |pixel: &mut f32, held: f32| *pixel += (1.0 - *pixel) * held,
         };
-        for group in groups(&self.casts) {
+        for group in groups(&self.casts, self.scene.overlap()) {
             fusion::draw(&group, &self.grid, options, scratch, &mut sink);
         }
     }
 
-    /// Blends the shadows, black and of the scene's key strength, onto premultiplied RGBA8 pixels, row by row.
+    /// Blends the shadows in the scene's tone onto premultiplied RGBA8 pixels, row by row.
     ///
     /// # Errors
     /// [`Error::BufferSize`](crate::Error::BufferSize) when `pixels` are fewer than the grid's.
@@ -110,10 +117,10 @@ impl GroundShadows<'_> {
         options: &PixelOptions<'_>,
         scratch: &mut Scratch,
     ) -> Result<()> {
-        let key = self.scene.tone().key();
+        let tone = self.scene.tone();
         self.grid.check_buffer(pixels.len() / 4)?;
         options.check(&self.grid)?;
-        for group in groups(&self.casts) {
+        for group in groups(&self.casts, self.scene.overlap()) {
             // Alone, a cast needs no density between its method and the pixels.
             let weight = match group.as_slice() {
                 [alone] => alone.weight() as f32,
@@ -123,13 +130,17 @@ impl GroundShadows<'_> {
                 level: scratch.level(),
                 pixels,
                 layout: options.layout(&self.grid),
-                ink: Ink::new(&Paint::new(Color::BLACK, key * weight)?),
+                ink: Ink::new(&Paint::new(opaque(tone.color()), tone.key() * weight)?),
             };
             match group.as_slice() {
-                [alone] => density::draw(&alone.shadow, &self.grid, options, scratch, &mut sink),
+                [alone] => alone.shadow.draw(&self.grid, options, scratch, &mut sink),
                 _ => fusion::draw(&group, &self.grid, options, scratch, &mut sink),
             }
         }
         Ok(())
     }
+}
+
+fn opaque(color: Color) -> Color {
+    Color::rgb(color.r, color.g, color.b)
 }

@@ -1,15 +1,24 @@
 //! Composition onto a tiny-skia pixmap.
 
+mod mix;
+mod texture;
+
+use core::ops::Range;
+
+use glam::DVec2;
 use tiny_skia::{ColorU8, Pixmap};
 
-use super::fusion::{self, Cast, groups};
-use super::{Receiver, ambient_casts, key_casts};
+use self::mix::Mixer;
+use self::texture::Texture;
+use super::fusion::{self, groups};
+use super::{Receiver, Stage};
 use crate::density::{self, Each, PixelOptions};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::hidden::Hidden;
-use crate::scene::{Scene, Surface};
+use crate::scene::{Form, Scene, Surface};
 use crate::scratch::Scratch;
+use crate::shadow::Bounds;
 use crate::tone::Color;
 
 /// Draws scenes. It keeps nothing of a scene but the memory that it drew it with.
@@ -19,23 +28,45 @@ use crate::tone::Color;
 #[derive(Debug, Default)]
 pub struct Renderer {
     scratch: Scratch,
-    /// For each pixel the rank of the highest surface that hides all below: 0 is the ground, 1 the lowest surface.
+    /// For each pixel that is drawn the rank of the highest surface that hides all below: 0 is the ground, 1 the lowest surface.
     topmost: Vec<u32>,
-    /// Of the receiver that is being drawn: how much of each pixel it covers, and what passes of light and ambience.
+    /// Of the receiver that is being drawn: how much of each pixel it covers, and what passes of the lights and the ambience.
     cover: Vec<f32>,
-    key: Vec<f32>,
-    ambient: Vec<f32>,
+    passed: Vec<f32>,
 }
 
 /// A receiver while it is drawn.
 struct Layer {
     receiver: Receiver,
     rank: u32,
-    fill: Color,
+    fill: Fill,
     weight: f32,
-    /// The pixels that it may touch, and where among the picture's they begin.
+    is_shaded: bool,
+    /// The pixels that it may touch, and where among those that are drawn they begin.
     grid: Grid,
     first: [u32; 2],
+}
+
+enum Fill {
+    Color(Color),
+    Texture(Texture),
+}
+
+/// The pixels that are drawn: some columns and rows of the picture's.
+struct Window {
+    columns: Range<u32>,
+    rows: Range<u32>,
+    grid: Grid,
+}
+
+impl Window {
+    fn new(grid: &Grid, columns: Range<u32>, rows: Range<u32>) -> Self {
+        Self {
+            grid: grid.window([columns.start, rows.start], [columns.end, rows.end]),
+            columns,
+            rows,
+        }
+    }
 }
 
 impl Renderer {
@@ -72,6 +103,66 @@ impl Renderer {
         &mut self,
         scene: &Scene,
         pixmap: &mut Pixmap,
+        progress: impl FnMut(usize, usize),
+    ) -> Result<()> {
+        let grid = scene.grid()?;
+        let window = Window::new(&grid, 0..grid.width(), 0..grid.height());
+        self.draw(scene, &Stage::new(scene)?, &window, pixmap, progress)
+    }
+
+    /// Draws the pixels that meet boxes (scene units), as [`Renderer::render`] draws them bit for bit, and leaves all others as they
+    /// are: with [`Scene::damage_since`], what has changed since the pixmap was drawn.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`].
+    ///
+    /// ```
+    /// use penumbral::{Light, Renderer, Scene, Shape, Surface};
+    /// use tiny_skia::Pixmap;
+    ///
+    /// let scene = |x: f32| -> penumbral::Result<Scene> {
+    ///     let mut scene = Scene::new([120.0, 80.0], Light::android(120.0)?)?;
+    ///     scene.push(Surface::new(Shape::rounded_rect(x, 20.0, 40.0, 40.0, 8.0)?, 4.0))?;
+    ///     Ok(scene)
+    /// };
+    /// let (before, after) = (scene(10.0)?, scene(14.0)?);
+    /// let mut renderer = Renderer::new();
+    /// let mut pixmap = Pixmap::new(120, 80).unwrap();
+    /// renderer.render(&before, &mut pixmap)?;
+    /// renderer.render_within(&after, &after.damage_since(&before)?, &mut pixmap)?;
+    /// # Ok::<(), penumbral::Error>(())
+    /// ```
+    pub fn render_within(
+        &mut self,
+        scene: &Scene,
+        boxes: &[Bounds],
+        pixmap: &mut Pixmap,
+    ) -> Result<()> {
+        let grid = scene.grid()?;
+        let scale = grid.pixels_per_unit();
+        let stage = Stage::new(scene)?;
+        for bounds in boxes {
+            let [columns, rows] = [0, 1].map(|axis| {
+                let end = f64::from([grid.width(), grid.height()][axis]);
+                let pixel = |v: f32, round: fn(f64) -> f64| {
+                    round(f64::from(v) * scale).clamp(0.0, end) as u32
+                };
+                pixel(bounds.min[axis], f64::floor)..pixel(bounds.max[axis], f64::ceil)
+            });
+            if !columns.is_empty() && !rows.is_empty() {
+                let window = Window::new(&grid, columns, rows);
+                self.draw(scene, &stage, &window, pixmap, |_, _| {})?;
+            }
+        }
+        Ok(())
+    }
+
+    fn draw(
+        &mut self,
+        scene: &Scene,
+        stage: &Stage<'_>,
+        window: &Window,
+        pixmap: &mut Pixmap,
         mut progress: impl FnMut(usize, usize),
     ) -> Result<()> {
         let grid = scene.grid()?;
@@ -81,41 +172,40 @@ impl Renderer {
                 needed: grid.width() as usize * grid.height() as usize,
             });
         }
-        let order = scene.paint_order();
-        let layers = order.len() + 1;
-        self.find_topmost(scene, &order, &grid);
+        let layers = stage.order.len() + 1;
+        self.find_topmost(stage, window);
         let ground = Layer {
             receiver: Receiver::ground(scene),
             rank: 0,
-            fill: scene.background(),
+            fill: Fill::Color(scene.background()),
             weight: 1.0,
-            grid,
+            is_shaded: true,
+            grid: window.grid,
             first: [0, 0],
         };
         self.cover.clear();
         self.cover.resize(self.topmost.len(), 1.0);
-        if self.is_visible(&ground, grid.width()) {
-            self.draw_layer(scene, &ground, pixmap)?;
+        if self.is_visible(&ground, window) {
+            self.draw_layer(scene, stage, &ground, window, pixmap)?;
         }
         progress(1, layers);
-        for (index, &surface) in order.iter().enumerate() {
-            let surface = &scene.surfaces()[surface];
-            let layer = layer(scene, surface, index as u32 + 1, &grid);
-            if let Some(layer) = layer.filter(|layer| self.is_visible(layer, grid.width())) {
+        for (index, &surface) in stage.order.iter().enumerate() {
+            let layer = layer(scene, surface, index as u32 + 1, window)?;
+            if let Some(layer) = layer.filter(|layer| self.is_visible(layer, window)) {
                 self.find_cover(surface, &layer);
-                self.draw_layer(scene, &layer, pixmap)?;
+                self.draw_layer(scene, stage, &layer, window, pixmap)?;
             }
             progress(index + 2, layers);
         }
         Ok(())
     }
 
-    fn find_topmost(&mut self, scene: &Scene, order: &[usize], grid: &Grid) {
+    fn find_topmost(&mut self, stage: &Stage<'_>, window: &Window) {
+        let grid = &window.grid;
         self.topmost.clear();
         self.topmost
             .resize(grid.width() as usize * grid.height() as usize, 0);
-        for (index, &surface) in order.iter().enumerate() {
-            let surface = &scene.surfaces()[surface];
+        for (index, &surface) in stage.order.iter().enumerate() {
             if surface.is_opaque() {
                 let rank = index as u32 + 1;
                 let mut sink = Each {
@@ -160,97 +250,135 @@ impl Renderer {
     }
 
     /// Whether anything of the layer is seen.
-    fn is_visible(&self, layer: &Layer, stride: u32) -> bool {
+    fn is_visible(&self, layer: &Layer, window: &Window) -> bool {
         let [left, top] = layer.first;
         (top..top + layer.grid.height()).any(|row| {
-            let start = (row * stride + left) as usize;
+            let start = (row * window.grid.width() + left) as usize;
             let pixels = &self.topmost[start..start + layer.grid.width() as usize];
             pixels.iter().any(|&rank| rank <= layer.rank)
         })
     }
 
-    fn draw_layer(&mut self, scene: &Scene, layer: &Layer, pixmap: &mut Pixmap) -> Result<()> {
-        let mut key = core::mem::take(&mut self.key);
-        let mut ambient = core::mem::take(&mut self.ambient);
-        let hidden = self.hidden_pixels(layer, pixmap.width());
-        let key_casts = key_casts(scene, &layer.receiver)?;
-        self.transmit(&key_casts, layer, &hidden, &mut key);
-        let ambient_casts = ambient_casts(scene, &layer.receiver)?;
-        self.transmit(&ambient_casts, layer, &hidden, &mut ambient);
-        let strength = scene.tone().key();
-        let fill = [layer.fill.r, layer.fill.g, layer.fill.b].map(f32::from);
+    fn draw_layer(
+        &mut self,
+        scene: &Scene,
+        stage: &Stage<'_>,
+        layer: &Layer,
+        window: &Window,
+        pixmap: &mut Pixmap,
+    ) -> Result<()> {
+        self.find_passed(scene, stage, layer, window)?;
+        let mixer = Mixer::new(&scene.tone());
         let stride = pixmap.width() as usize;
         let pixels = pixmap.pixels_mut();
+        let [left, top] = layer.first.map(|first| first as usize);
         let columns = layer.grid.width() as usize;
         for row in 0..layer.grid.height() as usize {
-            let start = (row + layer.first[1] as usize) * stride + layer.first[0] as usize;
+            let drawn = (row + top) * window.grid.width() as usize + left;
+            let start = (row + top + window.rows.start as usize) * stride
+                + left
+                + window.columns.start as usize;
             for column in 0..columns {
                 let index = row * columns + column;
-                let alpha = self.cover[index] * layer.weight;
-                if alpha == 0.0 || self.topmost[start + column] > layer.rank {
+                let mut alpha = self.cover[index] * layer.weight;
+                if alpha == 0.0 || self.topmost[drawn + column] > layer.rank {
                     continue;
                 }
-                let light = (1.0 - strength * (1.0 - key[index])) * ambient[index];
-                let below = pixels[start + column];
-                let below = [below.red(), below.green(), below.blue()].map(f32::from);
-                let [r, g, b] = [0, 1, 2]
-                    .map(|c: usize| (below[c] + (fill[c] * light - below[c]) * alpha + 0.5) as u8);
-                pixels[start + column] = ColorU8::from_rgba(r, g, b, 255).premultiply();
+                let fill = match &layer.fill {
+                    Fill::Color(color) => [color.r, color.g, color.b],
+                    Fill::Texture(texture) => {
+                        let (color, opacity) = texture.at(index);
+                        alpha *= opacity;
+                        color
+                    }
+                };
+                let pixel = &mut pixels[start + column];
+                let below = [pixel.red(), pixel.green(), pixel.blue()];
+                let [r, g, b] = mixer.mixed(fill, below, self.passed[index], alpha);
+                *pixel = ColorU8::from_rgba(r, g, b, 255).premultiply();
             }
         }
-        (self.key, self.ambient) = (key, ambient);
+        Ok(())
+    }
+
+    /// Finds what the casters above let pass to each pixel of the layer.
+    fn find_passed(
+        &mut self,
+        scene: &Scene,
+        stage: &Stage<'_>,
+        layer: &Layer,
+        window: &Window,
+    ) -> Result<()> {
+        self.passed.clear();
+        self.passed.resize(
+            layer.grid.width() as usize * layer.grid.height() as usize,
+            1.0,
+        );
+        if !layer.is_shaded {
+            return Ok(());
+        }
+        let hidden = self.hidden_pixels(layer, window);
+        let options = PixelOptions {
+            hidden: Some(&hidden),
+            ..PixelOptions::default()
+        };
+        for (strength, casts) in stage.casts(&layer.receiver)? {
+            let mut sink = Each {
+                pixels: &mut self.passed,
+                stride: layer.grid.width() as usize,
+                put: |passed: &mut f32, held: f32| *passed *= 1.0 - strength * held,
+            };
+            for group in groups(&casts, scene.overlap()) {
+                fusion::draw(&group, &layer.grid, &options, &mut self.scratch, &mut sink);
+            }
+        }
         Ok(())
     }
 
     /// The layer's pixels that are not its own, or that a surface above hides.
-    fn hidden_pixels(&self, layer: &Layer, stride: u32) -> Hidden {
+    fn hidden_pixels(&self, layer: &Layer, window: &Window) -> Hidden {
         let [left, top] = layer.first;
         let mut hidden = Hidden::new(&layer.grid);
         hidden.add_where(|column, row| {
-            let pixel = ((row + top) * stride + column + left) as usize;
+            let pixel = ((row + top) * window.grid.width() + column + left) as usize;
             self.topmost[pixel] > layer.rank
                 || self.cover[(row * layer.grid.width() + column) as usize] == 0.0
         });
         hidden
     }
-
-    /// What the casters let pass to each pixel of the layer.
-    fn transmit(&mut self, casts: &[Cast], layer: &Layer, hidden: &Hidden, passed: &mut Vec<f32>) {
-        passed.clear();
-        passed.resize(
-            layer.grid.width() as usize * layer.grid.height() as usize,
-            1.0,
-        );
-        let options = PixelOptions {
-            hidden: Some(hidden),
-            ..PixelOptions::default()
-        };
-        let mut sink = Each {
-            pixels: passed,
-            stride: layer.grid.width() as usize,
-            put: |passed: &mut f32, held: f32| *passed *= 1.0 - held,
-        };
-        for group in groups(casts) {
-            fusion::draw(&group, &layer.grid, &options, &mut self.scratch, &mut sink);
-        }
-    }
 }
 
-fn layer(scene: &Scene, surface: &Surface, rank: u32, grid: &Grid) -> Option<Layer> {
-    let receiver = Receiver::surface(scene, surface).filter(|_| surface.weight() > 0.0)?;
-    let scale = grid.pixels_per_unit();
-    let first = [receiver.min.x, receiver.min.y].map(|v| (v * scale).floor() as u32);
-    let end = [
-        (receiver.max.x, grid.width()),
-        (receiver.max.y, grid.height()),
-    ]
-    .map(|(v, count)| ((v * scale).ceil() as u32).min(count));
-    Some(Layer {
+fn layer(scene: &Scene, surface: &Surface, rank: u32, window: &Window) -> Result<Option<Layer>> {
+    let Some(receiver) = Receiver::surface(scene, surface).filter(|_| surface.weight() > 0.0)
+    else {
+        return Ok(None);
+    };
+    let scale = window.grid.pixels_per_unit();
+    let [columns, rows] =
+        [(0, &window.columns), (1, &window.rows)].map(|(axis, seen): (usize, &Range<u32>)| {
+            let [first, end] = [
+                (receiver.min * scale).floor(),
+                (receiver.max * scale).ceil(),
+            ]
+            .map(|v: DVec2| (v[axis] as u32).clamp(seen.start, seen.end) - seen.start);
+            first..end
+        });
+    if columns.is_empty() || rows.is_empty() {
+        return Ok(None);
+    }
+    let first = [columns.start, rows.start];
+    let grid = window.grid.window(first, [columns.end, rows.end]);
+    let fill = match surface.form() {
+        Form::Image(image, place) => Fill::Texture(Texture::new(image, place, &grid)?),
+        Form::Level | Form::Posed(_) => Fill::Color(surface.fill()),
+    };
+    Ok(Some(Layer {
         receiver,
         rank,
-        fill: surface.fill(),
+        fill,
         weight: surface.weight(),
-        grid: grid.window(first, end),
+        is_shaded: !matches!(surface.form(), Form::Posed(_)),
+        grid,
         first,
-    })
+    }))
 }

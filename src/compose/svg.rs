@@ -8,29 +8,48 @@ use std::borrow::Cow;
 
 use glam::DVec2;
 
-use super::fusion::Cast;
-use super::{Receiver, ambient_casts, is_shaded, key_casts};
+use super::caster::{AnyShadow, Cast};
+use super::{Receiver, Stage};
 use crate::density::{averaged_side, flatness};
-use crate::error::Result;
-use crate::scene::{Scene, Surface};
+use crate::error::{Error, Result};
+use crate::scene::{Form, Scene, Surface};
 use crate::shadow::Shadow;
 use crate::svg::{Svg, number};
 use crate::tolerance::Tolerance;
-use crate::tone::Color;
+use crate::tone::{Blending, Color};
 
 impl Scene {
     /// The scene as an SVG picture of the same size and the same look as the PNG: each shadow within `tolerance` of the
     /// exact one, where it is wide against a pixel, and the rounding of what shows it. Coordinates have fixed decimals and
     /// everything has its place, so that the text can be a snapshot.
     ///
+    /// Casters of several elevations are taken as independent of each other here.
+    ///
     /// # Errors
-    /// None that the constructors let pass.
+    /// [`Error::NotInSvg`] for tilted surfaces, images, coloured shadows and linear blending.
     pub fn to_svg(&self, tolerance: Tolerance) -> Result<String> {
+        let has = |is: fn(&Form) -> bool| self.surfaces().iter().any(|surface| is(surface.form()));
+        let missing = [
+            (
+                "a tilted surface",
+                has(|form| matches!(form, Form::Posed(_))),
+            ),
+            ("an image", has(|form| matches!(form, Form::Image(..)))),
+            (
+                "linear blending",
+                self.tone().blending() == Blending::Linear,
+            ),
+        ];
+        if let Some((what, _)) = missing.into_iter().find(|(_, is_there)| *is_there) {
+            return Err(Error::NotInSvg { what });
+        }
         let grid = self.grid()?;
         let size = [grid.width(), grid.height()].map(f64::from);
         let extent = DVec2::from(size) / grid.pixels_per_unit();
+        let stage = Stage::new(self)?;
         let mut writer = Writer {
             scene: self,
+            stage: &stage,
             tolerance,
             svg: Svg::new(grid.pixels_per_unit()),
             levels: Vec::new(),
@@ -42,8 +61,7 @@ impl Scene {
         if let Some(level) = writer.level(&Receiver::ground(self))? {
             writer.svg.draw(&format!("<use href=\"#s{level}\"/>"));
         }
-        for (rank, index) in self.paint_order().into_iter().enumerate() {
-            let surface = &self.surfaces()[index];
+        for (rank, &surface) in stage.order.iter().enumerate() {
             if let Some(receiver) =
                 Receiver::surface(self, surface).filter(|_| surface.weight() > 0.0)
             {
@@ -61,6 +79,7 @@ fn attributes(min: DVec2, size: DVec2) -> String {
 
 struct Writer<'a> {
     scene: &'a Scene,
+    stage: &'a Stage<'a>,
     tolerance: Tolerance,
     svg: Svg,
     /// The elevations whose shadows are defined, and whether there are any.
@@ -77,7 +96,7 @@ impl Writer<'_> {
         let Color { r, g, b, .. } = surface.fill();
         let fill = Color::rgb(r, g, b);
         let weight = number(f64::from(surface.weight()), 4);
-        let level = if is_shaded(self.scene, receiver)? {
+        let level = if self.stage.is_shaded(receiver)? {
             self.level(receiver)?
         } else {
             None
@@ -113,38 +132,33 @@ impl Writer<'_> {
             elevation: receiver.elevation,
             ..Receiver::ground(self.scene)
         };
-        let strength = f64::from(self.scene.tone().key());
-        let key = if strength > 0.0 {
-            key_casts(self.scene, &receiver)?
-        } else {
-            Vec::new()
-        };
-        let ambient = ambient_casts(self.scene, &receiver)?;
+        let casts = self.stage.casts(&receiver)?;
         let level = self.levels.len();
-        let any = !key.is_empty() || !ambient.is_empty();
+        let any = !casts.is_empty();
         self.levels.push((receiver.elevation, any));
         if !any {
             return Ok(None);
         }
         let mut group = self.svg.part();
         group.draw(&format!("<g id=\"s{level}\">"));
-        self.draw_casts(&key, strength, &mut group);
-        self.draw_casts(&ambient, 1.0, &mut group);
+        for (strength, casts) in &casts {
+            self.draw_casts(casts, f64::from(*strength), &mut group);
+        }
         group.draw("</g>");
         self.svg.define_part(group);
         Ok(Some(level))
     }
 
     fn draw_casts(&self, casts: &[Cast], strength: f64, svg: &mut Svg) {
-        if casts.is_empty() {
-            return;
-        }
         svg.draw(&format!("<g opacity=\"{}\">", number(strength, 4)));
         for cast in casts {
+            let AnyShadow::Level(shadow) = &cast.shadow else {
+                continue;
+            };
             svg.draw("<g shape-rendering=\"crispEdges\">");
             // What a faint shadow may be wrong by, the picture is wrong by less.
             let tolerance = self.tolerance.divided(strength * cast.weight());
-            svg.draw_mesh(&self.averaged(&cast.shadow).mesh(tolerance), cast.weight());
+            svg.draw_mesh(&self.averaged(shadow).mesh(tolerance), cast.weight());
             svg.draw("</g>");
         }
         svg.draw("</g>");

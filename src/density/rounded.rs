@@ -64,6 +64,11 @@ impl Rounded {
         size.x * size.y - cut * (1.0 - core::f64::consts::FRAC_PI_4)
     }
 
+    /// Whether no corner is rounded.
+    pub(crate) fn is_sharp(&self) -> bool {
+        self.radii.iter().all(|&radius| radius == 0.0)
+    }
+
     /// The radius, if it is a circle.
     pub(crate) fn circle(&self) -> Option<f64> {
         let size = self.max - self.min;

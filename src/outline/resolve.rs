@@ -41,10 +41,7 @@ pub(crate) fn resolve_loops(
     winding: Winding,
     keep_collinear: bool,
 ) -> Vec<Vec<DVec2>> {
-    let contours: Vec<Vec<[f64; 2]>> = polygons
-        .iter()
-        .map(|polygon| polygon.iter().map(|p| p.to_array()).collect())
-        .collect();
+    let contours = contours(polygons);
     let mut options = OverlayOptions::default();
     options.preserve_input_collinear = keep_collinear;
     options.preserve_output_collinear = keep_collinear;
@@ -62,5 +59,33 @@ pub(crate) fn resolve_loops(
         .into_iter()
         .flatten()
         .map(|contour| contour.into_iter().map(DVec2::from_array).collect())
+        .collect()
+}
+
+/// The loops of what two sets of loops both cover, each of them as [`resolve_loops`] gives them.
+pub(crate) fn intersect_loops(a: &[Vec<DVec2>], b: &[Vec<DVec2>]) -> Vec<Vec<DVec2>> {
+    let (a, b) = (contours(a), contours(b));
+    let count = a.iter().chain(&b).map(Vec::len).sum();
+    let points = a.iter().chain(&b).flatten();
+    let adapter = FloatPointAdapter::<[f64; 2], i64>::with_iter_conservative(points);
+    FloatOverlay::new_custom(
+        adapter,
+        OverlayOptions::default(),
+        Default::default(),
+        count,
+    )
+    .unsafe_add_source(&a, ShapeType::Subject)
+    .unsafe_add_source(&b, ShapeType::Clip)
+    .overlay(OverlayRule::Intersect, OverlayRuleOfFill::NonZero)
+    .into_iter()
+    .flatten()
+    .map(|contour| contour.into_iter().map(DVec2::from_array).collect())
+    .collect()
+}
+
+fn contours(polygons: &[Vec<DVec2>]) -> Vec<Vec<[f64; 2]>> {
+    polygons
+        .iter()
+        .map(|polygon| polygon.iter().map(|p| p.to_array()).collect())
         .collect()
 }

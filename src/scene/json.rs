@@ -1,14 +1,17 @@
 //! Reading the JSON scene format.
 
+mod surface;
+
 use serde::{Deserialize, Deserializer};
 use serde_json::value::RawValue;
 
-use super::{Scene, Surface};
+use self::surface::SurfaceFields;
+use super::group::MAX_DEPTH;
+use super::{Group, Overlap, Scene, Surface};
 use crate::error::{Error, MAX_SCENE_LENGTH, Result};
+use crate::image::Image;
 use crate::light::Light;
-use crate::path::{FillRule, Path};
-use crate::shape::{CornerRadii, Shape};
-use crate::tone::{Color, Tone};
+use crate::tone::{Blending, Color, Tone};
 
 /// A scene may not have more surfaces than this.
 const MAX_SURFACES: usize = 1 << 16;
@@ -35,67 +38,79 @@ struct SceneFields<'a> {
     key: Option<&'a RawValue>,
     #[serde(borrow, default, deserialize_with = "some")]
     ambient: Option<&'a RawValue>,
+    #[serde(borrow, default, deserialize_with = "some")]
+    lights: Option<Vec<&'a RawValue>>,
+    #[serde(borrow, default, deserialize_with = "some")]
+    shadow_color: Option<&'a RawValue>,
+    #[serde(borrow, default, deserialize_with = "some")]
+    blending: Option<&'a RawValue>,
+    #[serde(borrow, default, deserialize_with = "some")]
+    overlap: Option<&'a RawValue>,
     surfaces: Vec<&'a RawValue>,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct LightFields {
-    x: f32,
-    y: f32,
-    z: f32,
-    radius: f32,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct SurfaceFields {
-    shape: String,
-    elevation: f32,
-    #[serde(default, deserialize_with = "some")]
-    opacity: Option<f32>,
-    #[serde(default, deserialize_with = "some")]
-    fill: Option<String>,
-    #[serde(default, deserialize_with = "some")]
-    name: Option<String>,
     #[serde(default, deserialize_with = "some")]
     x: Option<f32>,
     #[serde(default, deserialize_with = "some")]
     y: Option<f32>,
     #[serde(default, deserialize_with = "some")]
-    w: Option<f32>,
-    #[serde(default, deserialize_with = "some")]
-    h: Option<f32>,
+    z: Option<f32>,
     #[serde(default, deserialize_with = "some")]
     radius: Option<f32>,
     #[serde(default, deserialize_with = "some")]
-    radii: Option<[RadiusFields; 4]>,
+    offset: Option<[f32; 2]>,
     #[serde(default, deserialize_with = "some")]
-    cx: Option<f32>,
+    spread: Option<f32>,
     #[serde(default, deserialize_with = "some")]
-    cy: Option<f32>,
-    #[serde(default, deserialize_with = "some")]
-    r: Option<f32>,
-    #[serde(default, deserialize_with = "some")]
-    rx: Option<f32>,
-    #[serde(default, deserialize_with = "some")]
-    ry: Option<f32>,
-    #[serde(default, deserialize_with = "some")]
-    points: Option<Vec<[f32; 2]>>,
-    #[serde(default, deserialize_with = "some")]
-    rings: Option<Vec<Vec<[f32; 2]>>>,
-    #[serde(default, deserialize_with = "some")]
-    d: Option<String>,
-    #[serde(default, deserialize_with = "some")]
-    fill_rule: Option<String>,
+    key: Option<f32>,
 }
 
-#[derive(Deserialize, Clone, Copy)]
-#[serde(untagged)]
-enum RadiusFields {
-    One(f32),
-    Pair([f32; 2]),
+impl LightFields {
+    fn build(&self) -> core::result::Result<Light, String> {
+        let light = match (
+            self.x,
+            self.y,
+            self.z,
+            self.radius,
+            self.offset,
+            self.spread,
+        ) {
+            (Some(x), Some(y), Some(z), Some(radius), None, None) => Light::new([x, y, z], radius),
+            (None, None, None, None, Some(offset), Some(spread)) => {
+                Light::directional(offset, spread)
+            }
+            _ => {
+                return Err(
+                    "a light needs `x`, `y`, `z` and `radius`, or `offset` and `spread`".to_owned(),
+                );
+            }
+        };
+        light.map_err(|error| error.to_string())
+    }
 }
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct GroupFields<'a> {
+    #[serde(borrow)]
+    group: Vec<&'a RawValue>,
+    elevation: f32,
+    #[serde(borrow, default, deserialize_with = "some")]
+    clip: Option<&'a RawValue>,
+}
+
+/// What tells a group from a surface.
+#[derive(Deserialize)]
+struct MaybeGroup {
+    #[serde(default)]
+    group: Option<serde::de::IgnoredAny>,
+}
+
+/// Reads an image that a scene names.
+type Images<'a> = dyn FnMut(&str) -> core::result::Result<Image, String> + 'a;
 
 impl Scene {
     /// Reads a scene from its JSON format:
@@ -120,13 +135,39 @@ impl Scene {
     /// | `circle` | `cx`, `cy`, `r` |
     /// | `ellipse` | `cx`, `cy`, `rx`, `ry` |
     /// | `polygon` | `points` or `rings` of [x, y], and `fill_rule`: `nonzero` (the default) or `evenodd` |
-    /// | `path` | `d`, SVG path data, and `fill_rule` |
+    /// | `path` | `d`, SVG path data, and `fill_rule`; or `stroke`: `width`, `cap` (`butt`, `square`, `round`), `join` (`miter`, `round`, `bevel`), `miter_limit` |
+    ///
+    /// A surface is tilted by `tilt`: `pivot` [x, y], `axis` [x, y] and `degrees` ([`Pose::turned`](crate::Pose::turned)); an
+    /// `rrect` also by `corners` in place of `elevation`, the elevations of its four corners from the top left clockwise. An
+    /// `rrect` with an `image`, the name of a file, is that image ([`Scene::from_json_with_images`]).
+    ///
+    /// In place of a surface there may be a group: `group`, a list of surfaces and groups; `elevation`, which is added to theirs;
+    /// and `clip`, a shape's fields, outside of which nothing of them is left.
+    ///
+    /// A light may be directional: `offset` [x, y] and `spread` in place of `x`, `y`, `z` and `radius`
+    /// ([`Light::directional`]). `lights` is a list of further lights, each with its own `key`. Of the tone there are
+    /// `shadow_color` and `blending`, `srgb` (the default) or `linear`. `overlap` is `union` (the default) or `source-over`.
     ///
     /// Unknown fields, and fields of another shape, are refused.
     ///
     /// # Errors
     /// [`Error::Scene`] with line, column and field.
     pub fn from_json(text: &str) -> Result<Self> {
+        Self::from_json_with_images(text, &mut |name| {
+            Err(format!(
+                "the image {name:?} is not read here: see Scene::from_json_with_images"
+            ))
+        })
+    }
+
+    /// As [`Scene::from_json`], with images that `images` reads by their names.
+    ///
+    /// # Errors
+    /// As [`Scene::from_json`], and what `images` says of an image.
+    pub fn from_json_with_images(
+        text: &str,
+        images: &mut dyn FnMut(&str) -> core::result::Result<Image, String>,
+    ) -> Result<Self> {
         let whole = Part { text, part: text };
         if text.len() > MAX_SCENE_LENGTH {
             let reason = format!("{} bytes: at most {MAX_SCENE_LENGTH} are read", text.len());
@@ -139,8 +180,13 @@ impl Scene {
         };
 
         let light = part(fields.light);
-        let LightFields { x, y, z, radius } = light.read_object("light")?;
-        let light = Light::new([x, y, z], radius).map_err(|error| light.refuse("light", &error))?;
+        let of_light: LightFields = light.read_object("light")?;
+        if of_light.key.is_some() {
+            return Err(light.refuse("light", &"the first light's `key` is the scene's"));
+        }
+        let light = of_light
+            .build()
+            .map_err(|reason| light.refuse("light", &reason))?;
         let canvas = part(fields.canvas);
         let size = canvas.read("canvas")?;
         let mut scene = Self::new(size, light).map_err(|error| canvas.refuse("canvas", &error))?;
@@ -169,21 +215,104 @@ impl Scene {
             tone =
                 Tone::new(tone.key(), value).map_err(|error| ambient.refuse("ambient", &error))?;
         }
-        scene = scene.with_tone(tone);
-        let count = fields.surfaces.len();
-        if count > MAX_SURFACES {
-            let reason = format!("{count} surfaces: at most {MAX_SURFACES} are read");
-            return Err(whole.refuse("surfaces", &reason));
+        if let Some(color) = fields.shadow_color.map(part) {
+            let value: String = color.read("shadow_color")?;
+            let parsed = value.parse();
+            tone = tone.with_color(parsed.map_err(|error| color.refuse("shadow_color", &error))?);
         }
+        if let Some(blending) = fields.blending.map(part) {
+            let names = [("srgb", Blending::Srgb), ("linear", Blending::Linear)];
+            tone = tone.with_blending(blending.read_name("blending", &names)?);
+        }
+        if let Some(overlap) = fields.overlap.map(part) {
+            let names = [
+                ("union", Overlap::Union),
+                ("source-over", Overlap::SourceOver),
+            ];
+            scene = scene.with_overlap(overlap.read_name("overlap", &names)?);
+        }
+        scene = scene.with_tone(tone);
+        for (index, raw) in fields.lights.into_iter().flatten().enumerate() {
+            let field = format!("lights[{index}]");
+            let light = part(raw);
+            let of_light: LightFields = light.read_object(&field)?;
+            let key = of_light
+                .key
+                .ok_or_else(|| light.refuse(&field, &"missing field `key`"))?;
+            let built = of_light
+                .build()
+                .map_err(|reason| light.refuse(&field, &reason))?;
+            scene
+                .push_light(built, key)
+                .map_err(|error| light.refuse(&field, &error))?;
+        }
+        let mut members = Members {
+            text,
+            count: 0,
+            images,
+        };
         for (index, raw) in fields.surfaces.into_iter().enumerate() {
             let field = format!("surfaces[{index}]");
-            let surface = part(raw);
-            let built = surface.read_object::<SurfaceFields>(&field)?.build();
-            built
-                .and_then(|built| scene.push(built).map_err(|error| error.to_string()))
-                .map_err(|reason| surface.refuse(&field, &reason))?;
+            let refuse = |error: Error| part(raw).refuse(&field, &error);
+            match members.read(part(raw), &field, 0)? {
+                Member::Surface(surface) => scene.push(surface).map_err(refuse)?,
+                Member::Group(group) => scene.push_group(&group).map_err(refuse)?,
+            }
         }
         Ok(scene)
+    }
+}
+
+/// Reads surfaces and groups of a scene.
+struct Members<'a, 'i> {
+    text: &'a str,
+    /// How many there were.
+    count: usize,
+    images: &'i mut Images<'i>,
+}
+
+enum Member {
+    Surface(Surface),
+    Group(Group),
+}
+
+impl<'a> Members<'a, '_> {
+    fn read(&mut self, part: Part<'a>, field: &str, depth: usize) -> Result<Member> {
+        self.count += 1;
+        if self.count > MAX_SURFACES {
+            return Err(part.refuse(field, &format!("at most {MAX_SURFACES} surfaces are read")));
+        }
+        if depth > MAX_DEPTH {
+            return Err(part.refuse(field, &format!("groups are read {MAX_DEPTH} deep")));
+        }
+        let is_group = part.part.trim_start().starts_with('{')
+            && part.read::<MaybeGroup>(field)?.group.is_some();
+        if !is_group {
+            let fields: SurfaceFields = part.read_object(field)?;
+            let built = fields.build(self.images);
+            return built
+                .map(Member::Surface)
+                .map_err(|reason| part.refuse(field, &reason));
+        }
+        let fields: GroupFields<'a> = part.read_object(field)?;
+        let inner = |raw: &RawValue| Part {
+            text: self.text,
+            part: part_of(self.text, raw),
+        };
+        let mut group = Group::new(fields.elevation).map_err(|error| part.refuse(field, &error))?;
+        if let Some(clip) = fields.clip.map(inner) {
+            let field = format!("{field}.clip");
+            let shape = clip.read_object::<SurfaceFields>(&field)?.build_clip();
+            group = group.with_clip(shape.map_err(|reason| clip.refuse(&field, &reason))?);
+        }
+        let parts: Vec<Part<'a>> = fields.group.into_iter().map(inner).collect();
+        for (index, part) in parts.into_iter().enumerate() {
+            match self.read(part, &format!("{field}.group[{index}]"), depth + 1)? {
+                Member::Surface(surface) => group.push(surface),
+                Member::Group(inner) => group.push_group(inner),
+            }
+        }
+        Ok(Member::Group(group))
     }
 }
 
@@ -229,6 +358,17 @@ impl<'a> Part<'a> {
         self.read(field)
     }
 
+    /// Reads one of some names.
+    fn read_name<T: Copy>(&self, field: &str, names: &[(&str, T)]) -> Result<T> {
+        let value: String = self.read(field)?;
+        let known = names.iter().find(|(name, _)| *name == value);
+        known.map(|(_, meant)| *meant).ok_or_else(|| {
+            let list: Vec<&str> = names.iter().map(|(name, _)| *name).collect();
+            let reason = format!("{value:?} is unknown: give {}", list.join(" or "));
+            self.refuse(field, &reason)
+        })
+    }
+
     fn read<T: Deserialize<'a>>(&self, field: &str) -> Result<T> {
         let mut reader = serde_json::Deserializer::from_str(self.part);
         let value = serde_path_to_error::deserialize(&mut reader).map_err(|error| {
@@ -266,123 +406,10 @@ impl<'a> Part<'a> {
     }
 }
 
-impl SurfaceFields {
-    fn build(self) -> core::result::Result<Surface, String> {
-        self.refuse_foreign_fields()?;
-        let shape = self.build_shape()?;
-        let mut surface = Surface::new(shape, self.elevation);
-        if let Some(opacity) = self.opacity {
-            surface = surface.with_opacity(opacity);
-        }
-        if let Some(fill) = self.fill {
-            surface = surface.with_fill(fill.parse().map_err(|error| format!("fill {error}"))?);
-        }
-        if let Some(name) = self.name {
-            surface = surface.with_name(name);
-        }
-        Ok(surface)
-    }
-
-    fn build_shape(&self) -> core::result::Result<Shape, String> {
-        let need = |name: &str, value: Option<f32>| {
-            value.ok_or_else(|| format!("this shape needs the field `{name}`"))
-        };
-        let rule = match self.fill_rule.as_deref() {
-            None | Some("nonzero") => FillRule::NonZero,
-            Some("evenodd") => FillRule::EvenOdd,
-            Some(other) => {
-                return Err(format!(
-                    "fill_rule {other:?} is unknown: give \"nonzero\" or \"evenodd\""
-                ));
-            }
-        };
-        let shape = match self.shape.as_str() {
-            "rrect" => {
-                let radii = match (self.radius, self.radii) {
-                    (Some(_), Some(_)) => {
-                        return Err("`radius` and `radii` exclude each other: give one".to_owned());
-                    }
-                    (radius, None) => CornerRadii::from(radius.unwrap_or(0.0)),
-                    (None, Some(radii)) => CornerRadii(radii.map(|radius| match radius {
-                        RadiusFields::One(radius) => [radius; 2],
-                        RadiusFields::Pair(pair) => pair,
-                    })),
-                };
-                let (x, y) = (need("x", self.x)?, need("y", self.y)?);
-                Shape::rounded_rect(x, y, need("w", self.w)?, need("h", self.h)?, radii)
-            }
-            "circle" => Shape::circle(
-                [need("cx", self.cx)?, need("cy", self.cy)?],
-                need("r", self.r)?,
-            ),
-            "ellipse" => Shape::ellipse(
-                [need("cx", self.cx)?, need("cy", self.cy)?],
-                [need("rx", self.rx)?, need("ry", self.ry)?],
-            ),
-            "polygon" => match (&self.points, &self.rings) {
-                (Some(points), None) => Shape::polygon(&[points], rule),
-                (None, Some(rings)) => Shape::polygon(rings, rule),
-                _ => return Err("a polygon needs `points` or `rings`, one of them".to_owned()),
-            },
-            "path" => {
-                let data = self.d.as_deref().ok_or("a path needs the field `d`")?;
-                Path::from_svg(data).and_then(|path| Shape::path(&path, rule))
-            }
-            _ => return Err(self.unknown_shape()),
-        };
-        shape.map_err(|error| error.to_string())
-    }
-
-    fn unknown_shape(&self) -> String {
-        format!(
-            "shape {:?} is unknown: give rrect, circle, ellipse, polygon or path",
-            self.shape
-        )
-    }
-
-    /// A field that another shape has says that something was meant that will not be drawn.
-    fn refuse_foreign_fields(&self) -> core::result::Result<(), String> {
-        let given = [
-            ("x", self.x.is_some()),
-            ("y", self.y.is_some()),
-            ("w", self.w.is_some()),
-            ("h", self.h.is_some()),
-            ("radius", self.radius.is_some()),
-            ("radii", self.radii.is_some()),
-            ("cx", self.cx.is_some()),
-            ("cy", self.cy.is_some()),
-            ("r", self.r.is_some()),
-            ("rx", self.rx.is_some()),
-            ("ry", self.ry.is_some()),
-            ("points", self.points.is_some()),
-            ("rings", self.rings.is_some()),
-            ("d", self.d.is_some()),
-            ("fill_rule", self.fill_rule.is_some()),
-        ];
-        let own: &[&str] = match self.shape.as_str() {
-            "rrect" => &["x", "y", "w", "h", "radius", "radii"],
-            "circle" => &["cx", "cy", "r"],
-            "ellipse" => &["cx", "cy", "rx", "ry"],
-            "polygon" => &["points", "rings", "fill_rule"],
-            "path" => &["d", "fill_rule"],
-            _ => return Err(self.unknown_shape()),
-        };
-        match given
-            .iter()
-            .find(|(name, given)| *given && !own.contains(name))
-        {
-            Some((name, _)) => Err(format!(
-                "the field `{name}` is not one of this shape's, which are {}",
-                own.join(", ")
-            )),
-            None => Ok(()),
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::shape::Shape;
 
     fn scene(surface: &str) -> Result<Scene> {
         Scene::from_json(&format!(

@@ -81,6 +81,7 @@ fn enclosing(contour: &Contour) -> Option<Contour> {
     let cleaned = Contour {
         start: contour.start,
         segments,
+        closed: true,
     };
     let closing = usize::from(cleaned.end() != cleaned.start);
     let encloses = !cleaned.is_straight() || cleaned.segments.len() + closing > 2;
@@ -109,6 +110,7 @@ fn reversed(contour: &Contour) -> Contour {
     Contour {
         start: contour.end(),
         segments,
+        closed: true,
     }
 }
 

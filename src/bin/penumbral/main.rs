@@ -12,8 +12,9 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+use image::{ImageReader, Limits};
 use penumbral::plan::Method;
-use penumbral::{MAX_SCENE_LENGTH, Scene, Tolerance};
+use penumbral::{Image, MAX_PIXELS, MAX_SCENE_LENGTH, Scene, Tolerance};
 
 /// Shadows of material-style layered surfaces that state how wrong they may be, and keep to it.
 #[derive(Parser)]
@@ -145,7 +146,28 @@ fn read_scene(path: &Path) -> Result<Scene, Failure> {
             path.display()
         )
     })?;
-    Scene::from_json(&text).map_err(|error| format!("{}: {error}", path.display()))
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut images = |name: &str| read_image(&folder.join(name));
+    Scene::from_json_with_images(&text, &mut images)
+        .map_err(|error| format!("{}: {error}", path.display()))
+}
+
+/// Reads an image that a scene names, no larger than a picture may be.
+fn read_image(path: &Path) -> Result<Image, Failure> {
+    let describe = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
+    let mut reader = ImageReader::open(path)
+        .map_err(|error| describe(&error))?
+        .with_guessed_format()
+        .map_err(|error| describe(&error))?;
+    let mut limits = Limits::default();
+    limits.max_alloc = Some(8 * MAX_PIXELS);
+    reader.limits(limits);
+    let pixels = reader
+        .decode()
+        .map_err(|error| describe(&error))?
+        .into_rgba8();
+    Image::from_rgba8([pixels.width(), pixels.height()], pixels.into_raw())
+        .map_err(|error| describe(&error))
 }
 
 /// The extension of an output file, which says what is to be written.

@@ -1,0 +1,311 @@
+//! The shadow of an image: its alpha, texel by texel, averaged over the light's disc.
+//!
+//! Sums of alpha along each row of texels make a chord's share two look-ups. The chords are those of Gauss points between the
+//! edges of the rows, which are where alpha jumps: for texels of one alpha the rest is smooth.
+
+use core::f64::consts::{FRAC_1_PI, FRAC_PI_2};
+
+use glam::DVec2;
+use libm::{asin, cos, sin};
+
+use super::{Sink, averaged_side, quadrature};
+use crate::grid::Grid;
+use crate::hidden::Hidden;
+use crate::image::{Image, Place};
+use crate::light::Projection;
+
+/// Into so many equal angles the disc's height is cut, besides at rows of texels.
+const PIECES: u32 = 24;
+
+/// Two nodes of the Gauss-Legendre rule a piece, from -1 to 1 (Abramowitz & Stegun 1964, table 25.4).
+const GAUSS_2: f64 = 0.577_350_269_189_625_8;
+
+/// Below this radius in pixels the alpha under pixels is averaged over the disc, from there on the density over the pixel.
+const COVERAGE_RADIUS: f64 = 0.5;
+
+/// The shadow of an image on one receiver.
+#[derive(Debug, Clone)]
+pub(crate) struct AlphaShadow {
+    place: Place,
+    radius: f64,
+    size: [usize; 2],
+    /// For each row of texels the sums of its alphas (0 to 1) up to each column, one more than there are columns.
+    along: Vec<f64>,
+    /// The sums of all rows' sums up to each row, one row more than there are.
+    areas: Vec<f64>,
+}
+
+impl AlphaShadow {
+    pub(crate) fn project(image: &Image, place: &Place, projection: &Projection) -> Self {
+        let size = image.size().map(|side| side as usize);
+        let mut along = Vec::with_capacity((size[0] + 1) * size[1]);
+        for row in image.pixels().chunks_exact(4 * size[0]) {
+            let mut sum = 0.0;
+            along.push(sum);
+            for pixel in row.chunks_exact(4) {
+                sum += f64::from(pixel[3]) / 255.0;
+                along.push(sum);
+            }
+        }
+        let mut areas = vec![0.0; size[0] + 1];
+        for (index, sum) in along.iter().enumerate() {
+            areas.push(areas[index] + sum);
+        }
+        Self {
+            place: Place {
+                min: place.min * projection.scale + projection.offset,
+                size: place.size * projection.scale,
+            },
+            radius: projection.radius,
+            size,
+            along,
+            areas,
+        }
+    }
+
+    pub(crate) fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// The image's own box on the receiver.
+    pub(crate) fn hull(&self) -> (DVec2, DVec2) {
+        (self.place.min, self.place.min + self.place.size)
+    }
+
+    /// Gives `sink` the density of every pixel of the grid that is in the shadow and not hidden.
+    pub(crate) fn fill(&self, grid: &Grid, hidden: Option<&Hidden>, sink: &mut dyn Sink) {
+        let scale = grid.pixels_per_unit();
+        let side = averaged_side(self.radius * scale);
+        let reach = self.radius * scale + side / 2.0;
+        let (min, max) = self.hull();
+        let (min, max) = (
+            min * scale - reach - grid.corner(),
+            max * scale + reach - grid.corner(),
+        );
+        let [columns, rows] = [0, 1].map(|axis| {
+            let end = f64::from([grid.width(), grid.height()][axis]);
+            let on_grid = |v: f64| v.clamp(0.0, end) as u32;
+            on_grid(min[axis].floor())..on_grid(max[axis].ceil())
+        });
+        let mut chords = Chords::default();
+        let mut densities = vec![0.0; columns.len()];
+        for row in rows {
+            let middle = |column: u32| {
+                (grid.corner() + DVec2::new(f64::from(column) + 0.5, f64::from(row) + 0.5)) / scale
+            };
+            densities.fill(0.0);
+            if self.radius * scale < COVERAGE_RADIUS {
+                for (column, density) in columns.clone().zip(&mut densities) {
+                    let middle = middle(column);
+                    let average = quadrature::disc().map(|(light, weight)| {
+                        weight * self.coverage(middle + light * self.radius, 1.0 / scale)
+                    });
+                    *density = average.sum();
+                }
+            } else if side == 0.0 {
+                self.find_chords(middle(0).y, &mut chords);
+                for (column, density) in columns.clone().zip(&mut densities) {
+                    *density = self.density(middle(column).x, &chords);
+                }
+            } else {
+                let mut placed = f64::NAN;
+                for (offset, weight) in quadrature::square(self.radius * scale) {
+                    let offset = offset * side / scale;
+                    if offset.y != placed {
+                        placed = offset.y;
+                        self.find_chords(middle(0).y + offset.y, &mut chords);
+                    }
+                    for (column, density) in columns.clone().zip(&mut densities) {
+                        *density += weight * self.density(middle(column).x + offset.x, &chords);
+                    }
+                }
+            }
+            for (column, density) in columns.clone().zip(&densities) {
+                if *density > 0.0 && hidden.is_none_or(|hidden| !hidden.hides(column, row)) {
+                    sink.values(row, column..column + 1, &[density.min(1.0) as f32]);
+                }
+            }
+        }
+    }
+
+    fn find_chords(&self, y: f64, chords: &mut Chords) {
+        let texel = self.place.size.y / self.size[1] as f64;
+        let row_at = |y: f64| (y - self.place.min.y) / texel;
+        let angles = &mut chords.angles;
+        angles.clear();
+        angles.extend(
+            (0..=PIECES).map(|i| FRAC_PI_2 * (2.0 * f64::from(i) / f64::from(PIECES) - 1.0)),
+        );
+        let last = self.size[1] as f64;
+        let first_row = row_at(y - self.radius).ceil().clamp(0.0, last) as usize;
+        let last_row = row_at(y + self.radius).floor().clamp(0.0, last) as usize;
+        for row in first_row..=last_row {
+            let height = (self.place.min.y + row as f64 * texel - y) / self.radius;
+            if height.abs() < 1.0 {
+                angles.push(asin(height));
+            }
+        }
+        angles.sort_by(f64::total_cmp);
+        chords.chords.clear();
+        for piece in angles.windows(2) {
+            let half = (piece[1] - piece[0]) / 2.0;
+            let middle = piece[0] + half;
+            let row = row_at(y + self.radius * sin(middle)).floor();
+            if half < 1e-9 || row < 0.0 || row >= last {
+                continue;
+            }
+            for angle in [middle - GAUSS_2 * half, middle + GAUSS_2 * half] {
+                chords.chords.push(Chord {
+                    row: row as usize,
+                    half: self.radius * cos(angle),
+                    weight: half * cos(angle) * FRAC_1_PI / self.radius,
+                });
+            }
+        }
+    }
+
+    fn density(&self, x: f64, chords: &Chords) -> f64 {
+        let texel = self.place.size.x / self.size[0] as f64;
+        let width = self.size[0] + 1;
+        let sum = |chord: &Chord| {
+            let row = &self.along[chord.row * width..][..width];
+            let up_to = |x: f64| interpolated(row, (x - self.place.min.x) / texel) * texel;
+            chord.weight * (up_to(x + chord.half) - up_to(x - chord.half))
+        };
+        chords.chords.iter().map(sum).sum()
+    }
+
+    /// The mean alpha over a square about a point.
+    fn coverage(&self, middle: DVec2, side: f64) -> f64 {
+        let texel = self.place.size / DVec2::new(self.size[0] as f64, self.size[1] as f64);
+        let [low, high] = [-0.5, 0.5].map(|way| (middle + way * side - self.place.min) / texel);
+        let width = self.size[0] + 1;
+        let up_to = |x: f64, y: f64| {
+            let y = y.clamp(0.0, self.size[1] as f64);
+            let row = (y as usize).min(self.size[1] - 1);
+            let at = |row: usize| interpolated(&self.areas[row * width..][..width], x);
+            let (above, below) = (at(row), at(row + 1));
+            above + (below - above) * (y - row as f64)
+        };
+        let sum = up_to(high.x, high.y) - up_to(low.x, high.y) - up_to(high.x, low.y)
+            + up_to(low.x, low.y);
+        sum * texel.x * texel.y / (side * side)
+    }
+}
+
+/// A list of values at 0, 1, 2 and so on, between these and beyond.
+fn interpolated(values: &[f64], at: f64) -> f64 {
+    let last = values.len() - 1;
+    let at = at.clamp(0.0, last as f64);
+    let index = (at as usize).min(last - 1);
+    values[index] + (values[index + 1] - values[index]) * (at - index as f64)
+}
+
+/// Chords of the disc about points of one height.
+#[derive(Debug, Default)]
+struct Chords {
+    angles: Vec<f64>,
+    chords: Vec<Chord>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Chord {
+    /// The row of texels that it lies in.
+    row: usize,
+    /// Half its length, scene units, and what a unit of it is of the disc's area.
+    half: f64,
+    weight: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::density::Each;
+    use crate::light::Light;
+    use crate::scratch::Scratch;
+    use crate::shape::Shape;
+
+    /// An image of one alpha is a rectangle of that weight.
+    #[test]
+    fn an_opaque_image_casts_as_its_box() {
+        let grid = Grid::new([0.0, 0.0], [90, 80], 1.0).unwrap();
+        for (radius, allowed) in [
+            (0.0, 0.01),
+            (0.3, 0.2),
+            (0.8, 0.2),
+            (2.0, 0.2),
+            (6.0, 0.1),
+            (25.0, 0.1),
+        ] {
+            let light = Light::directional([0.0, 0.0], radius).unwrap();
+            let rect = [20.3, 15.6, 40.0, 30.0];
+            let image = Image::from_rgba8([7, 5], vec![255; 4 * 35]).unwrap();
+            let projection = light.projection(1.0, 0.0).unwrap();
+            let shadow = AlphaShadow::project(&image, &Place::new(rect).unwrap(), &projection);
+            let mut ours = vec![0.0; 90 * 80];
+            let mut sink = Each {
+                pixels: &mut ours,
+                stride: 90,
+                put: |pixel: &mut f32, density: f32| *pixel = density,
+            };
+            shadow.fill(&grid, None, &mut sink);
+            let shape = Shape::rect(rect[0], rect[1], rect[2], rect[3]).unwrap();
+            let options = crate::PixelOptions {
+                method: Some(crate::plan::Method::Exact),
+                ..Default::default()
+            };
+            let mut expected = vec![0.0; 90 * 80];
+            light
+                .cast(&shape, 1.0, 0.0)
+                .unwrap()
+                .fill_f32(&grid, &mut expected, &options, &mut Scratch::new())
+                .unwrap();
+            let errors = ours
+                .iter()
+                .zip(&expected)
+                .map(|(a, b)| (a - b).abs() * 255.0);
+            let worst = errors.fold(0.0, f32::max);
+            println!("r {radius}: {worst} levels");
+            assert!(worst < allowed, "r {radius}: {worst} levels");
+        }
+    }
+
+    /// Each texel is a rectangle of its own: their densities add up.
+    #[test]
+    fn texels_weigh_by_their_alpha() {
+        let alphas = [0_u8, 255, 90, 200, 0, 33];
+        let pixels: Vec<u8> = alphas
+            .iter()
+            .flat_map(|&alpha| [10, 20, 30, alpha])
+            .collect();
+        let image = Image::from_rgba8([3, 2], pixels).unwrap();
+        let light = Light::directional([0.0, 0.0], 7.0).unwrap();
+        let grid = Grid::new([0.0, 0.0], [60, 50], 1.0).unwrap();
+        let projection = light.projection(1.0, 0.0).unwrap();
+        let place = Place::new([15.0, 12.0, 30.0, 26.0]).unwrap();
+        let shadow = AlphaShadow::project(&image, &place, &projection);
+        let mut ours = vec![0.0; 60 * 50];
+        let mut sink = Each {
+            pixels: &mut ours,
+            stride: 60,
+            put: |pixel: &mut f32, density: f32| *pixel = density,
+        };
+        shadow.fill(&grid, None, &mut sink);
+        for (index, density) in ours.iter().enumerate() {
+            let point = [(index % 60) as f32 + 0.5, (index / 60) as f32 + 0.5];
+            let expected: f64 = alphas
+                .iter()
+                .enumerate()
+                .map(|(texel, &alpha)| {
+                    let (column, row) = ((texel % 3) as f32, (texel / 3) as f32);
+                    let shape =
+                        Shape::rect(15.0 + 10.0 * column, 12.0 + 13.0 * row, 10.0, 13.0).unwrap();
+                    let shadow = light.cast(&shape, 1.0, 0.0).unwrap();
+                    shadow.density_at(point) * f64::from(alpha) / 255.0
+                })
+                .sum();
+            let error = (f64::from(*density) - expected).abs() * 255.0;
+            assert!(error < 0.1, "{point:?}: {error} levels");
+        }
+    }
+}

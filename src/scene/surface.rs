@@ -1,0 +1,209 @@
+//! Surfaces: what a scene is made of.
+
+use std::sync::Arc;
+
+use glam::DVec2;
+
+use crate::error::{Error, Result};
+use crate::image::{Image, Place};
+use crate::light::Projection;
+use crate::pose::Pose;
+use crate::shadow::Shadow;
+use crate::shape::Shape;
+use crate::tone::Color;
+
+/// A flat shape over the ground: it casts shadows on what is below, and receives them from what is above unless it is tilted.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Surface {
+    shape: Shape,
+    elevation: f32,
+    form: Form,
+    opacity: f32,
+    fill: Color,
+    name: Option<String>,
+}
+
+/// How a surface lies, and what it is made of.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Form {
+    /// Parallel to the ground.
+    Level,
+    /// Tilted.
+    Posed(Pose),
+    /// Parallel to the ground, and transparent where an image is.
+    Image(Arc<Image>, Place),
+}
+
+impl Surface {
+    /// An opaque white surface; its elevation above the ground is in scene units.
+    #[must_use]
+    pub fn new(shape: Shape, elevation: f32) -> Self {
+        Self {
+            shape,
+            elevation,
+            form: Form::Level,
+            opacity: 1.0,
+            fill: Color::WHITE,
+            name: None,
+        }
+    }
+
+    /// An opaque white surface in a pose of its own. It is painted as it is seen from above, in the order of its middle's elevation;
+    /// what of it is below the ground is not there. No shadow falls on it.
+    #[must_use]
+    pub fn posed(shape: Shape, pose: &Pose) -> Self {
+        let middle = shape
+            .hull()
+            .map_or(DVec2::ZERO, |(min, max)| (min + max) / 2.0);
+        Self {
+            elevation: pose.place(middle).z as f32,
+            form: Form::Posed(*pose),
+            ..Self::new(shape, 0.0)
+        }
+    }
+
+    /// An image over the rectangle `rect` (x, y, width, height; scene units) at an elevation. It is painted in its own colours and
+    /// casts by its own alpha.
+    ///
+    /// # Errors
+    /// As [`Shape::rect`].
+    pub fn image(image: Arc<Image>, rect: [f32; 4], elevation: f32) -> Result<Self> {
+        let [x, y, width, height] = rect;
+        Ok(Self {
+            form: Form::Image(image, Place::new(rect)?),
+            ..Self::new(Shape::rect(x, y, width, height)?, elevation)
+        })
+    }
+
+    /// The same with another fill.
+    #[must_use]
+    pub fn with_fill(mut self, fill: Color) -> Self {
+        self.fill = fill;
+        self
+    }
+
+    /// The same with another opacity, 0 to 1; it multiplies the fill's own.
+    #[must_use]
+    pub fn with_opacity(mut self, opacity: f32) -> Self {
+        self.opacity = opacity;
+        self
+    }
+
+    /// The same with a name, for messages.
+    #[must_use]
+    pub fn with_name(mut self, name: impl Into<String>) -> Self {
+        self.name = Some(name.into());
+        self
+    }
+
+    /// The part of the surface inside a clip, or none: it casts what it shows.
+    ///
+    /// # Errors
+    /// [`Error::NotClipped`] for tilted surfaces and images, and as [`Shape::clipped`].
+    pub fn clipped(&self, clip: &Shape) -> Result<Option<Self>> {
+        if !matches!(self.form, Form::Level) {
+            return Err(Error::NotClipped);
+        }
+        let shape = self.shape.clipped(clip)?;
+        Ok(shape.map(|shape| Self {
+            shape,
+            ..self.clone()
+        }))
+    }
+
+    /// The same, higher by `height` (scene units).
+    #[must_use]
+    pub fn raised(mut self, height: f32) -> Self {
+        self.elevation += height;
+        if let Form::Posed(pose) = &mut self.form {
+            *pose = pose.raised(f64::from(height));
+        }
+        self
+    }
+
+    /// The shape, on its own plane.
+    #[must_use]
+    pub fn shape(&self) -> &Shape {
+        &self.shape
+    }
+
+    /// The elevation above the ground, scene units: of a tilted surface its middle's.
+    #[must_use]
+    pub fn elevation(&self) -> f32 {
+        self.elevation
+    }
+
+    /// The fill; its alpha and the opacity multiply.
+    #[must_use]
+    pub fn fill(&self) -> Color {
+        self.fill
+    }
+
+    /// The name, if it has one.
+    #[must_use]
+    pub fn name(&self) -> Option<&str> {
+        self.name.as_deref()
+    }
+
+    /// How much of what is behind it the surface hides, and of the light: opacity times the fill's alpha, 0 to 1. Of an image,
+    /// where it is opaque.
+    #[must_use]
+    pub fn weight(&self) -> f32 {
+        self.opacity * f32::from(self.fill.a) / 255.0
+    }
+
+    /// Whether nothing is seen through it.
+    #[must_use]
+    pub fn is_opaque(&self) -> bool {
+        self.weight() >= 1.0 && !matches!(self.form, Form::Image(..))
+    }
+
+    /// Whether it casts one shadow with others of its elevation.
+    pub(crate) fn is_united(&self) -> bool {
+        self.is_opaque() && matches!(self.form, Form::Level)
+    }
+
+    pub(crate) fn opacity(&self) -> f32 {
+        self.opacity
+    }
+
+    pub(crate) fn form(&self) -> &Form {
+        &self.form
+    }
+
+    /// The box of the surface as it is seen from above, scene units.
+    pub(crate) fn hull(&self) -> Option<(DVec2, DVec2)> {
+        let (min, max) = self.shape.hull()?;
+        let Form::Posed(pose) = &self.form else {
+            return Some((min, max));
+        };
+        let corners = [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)];
+        let seen = corners.map(|corner| pose.place(corner).truncate());
+        let [a, b, c, d] = seen;
+        Some((a.min(b).min(c).min(d), a.max(b).max(c).max(d)))
+    }
+
+    /// The elevation of its highest corner.
+    pub(crate) fn highest(&self) -> f64 {
+        match (&self.form, self.shape.hull()) {
+            (Form::Posed(pose), Some((min, max))) => {
+                let corners = [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)];
+                corners
+                    .map(|corner| pose.place(corner).z)
+                    .into_iter()
+                    .fold(f64::MIN, f64::max)
+            }
+            _ => f64::from(self.elevation),
+        }
+    }
+
+    /// The surface's own coverage as it is seen from above: its hard shadow on itself.
+    pub(crate) fn cover(&self) -> Shadow {
+        match &self.form {
+            Form::Posed(pose) => pose.cover(&self.shape),
+            Form::Level | Form::Image(..) => {
+                Shadow::project(&[self.shape()], &Projection::in_place(0.0))
+            }
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! Shapes cut to other shapes.
+
+use glam::DVec2;
+
+use super::Shape;
+use crate::density::rounded::Rounded;
+use crate::error::Result;
+use crate::outline::{Outline, intersect_loops};
+use crate::path::{FillRule, Path, Segment};
+
+/// How far from a curve of a cut shape its lines may be, in scene units.
+const FLATNESS: f64 = 2e-4;
+
+impl Shape {
+    /// The part of the shape inside another one, or none. Where something is cut away, curves become lines within 0.0002
+    /// scene units.
+    ///
+    /// # Errors
+    /// More than [`MAX_SEGMENTS`](crate::MAX_SEGMENTS) lines.
+    ///
+    /// ```
+    /// use penumbral::Shape;
+    ///
+    /// let list = Shape::rect(0.0, 56.0, 360.0, 584.0)?;
+    /// let card = Shape::rect(16.0, 20.0, 328.0, 80.0)?;
+    /// assert_eq!(card.clipped(&list)?, Some(Shape::rect(16.0, 56.0, 328.0, 44.0)?));
+    /// # Ok::<(), penumbral::Error>(())
+    /// ```
+    pub fn clipped(&self, by: &Self) -> Result<Option<Self>> {
+        let (Some((min, max)), Some((clip_min, clip_max))) = (self.hull(), by.hull()) else {
+            return Ok(None);
+        };
+        let (low, high) = (min.max(clip_min), max.min(clip_max));
+        if low.cmpge(high).any() {
+            return Ok(None);
+        }
+        if by.is_box() {
+            if (low, high) == (min, max) {
+                return Ok(Some(self.clone()));
+            }
+            if self.is_box() {
+                let size = (high - low).to_array().map(|v| v as f32);
+                return Self::rect(low.x as f32, low.y as f32, size[0], size[1]).map(Some);
+            }
+        }
+        let of = |shape: &Self| Outline::of_flattened(shape, FLATNESS).polygons(FLATNESS);
+        Self::of_loops(&intersect_loops(&of(self), &of(by)))
+    }
+
+    /// Whether it is a rectangle along the axes.
+    fn is_box(&self) -> bool {
+        Outline::of_simple(self)
+            .and_then(|outline| Rounded::of(&outline))
+            .is_some_and(|rounded| rounded.is_sharp())
+    }
+
+    /// The shape of loops that do not cross, or none without any.
+    pub(super) fn of_loops(loops: &[Vec<DVec2>]) -> Result<Option<Self>> {
+        if loops.is_empty() {
+            return Ok(None);
+        }
+        let mut path = Path::new();
+        for points in loops {
+            if let Some((first, rest)) = points.split_first() {
+                path.begin(*first);
+                for &to in rest {
+                    path.push(Segment::Line(to));
+                }
+                path.close();
+            }
+        }
+        Self::path(&path, FillRule::NonZero).map(Some)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn area(shape: &Shape) -> f64 {
+        Outline::of_flattened(shape, 1e-4).area()
+    }
+
+    #[test]
+    fn areas_of_cut_shapes_are_those_expected() {
+        let list = Shape::rect(0.0, 0.0, 100.0, 50.0).unwrap();
+        let circle = Shape::circle([50.0, 50.0], 20.0).unwrap();
+        let half = circle.clipped(&list).unwrap().unwrap();
+        assert!((area(&half) - 200.0 * core::f64::consts::PI).abs() < 0.02);
+        // What is inside keeps its curves; what is outside is nothing.
+        let inside = Shape::circle([50.0, 25.0], 20.0).unwrap();
+        assert_eq!(inside.clipped(&list).unwrap(), Some(inside));
+        let outside = Shape::circle([50.0, 75.0], 20.0).unwrap();
+        assert_eq!(outside.clipped(&list).unwrap(), None);
+        // A rectangle in a rounded clip loses its corners: (4 - π) r² of four.
+        let rounded = Shape::rounded_rect(0.0, 0.0, 100.0, 50.0, 10.0).unwrap();
+        let cut = list.clipped(&rounded).unwrap().unwrap();
+        let corners = (4.0 - core::f64::consts::PI) * 100.0;
+        assert!((area(&cut) - (5000.0 - corners)).abs() < 0.02);
+    }
+}
