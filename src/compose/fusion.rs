@@ -10,6 +10,7 @@ mod chords;
 use core::ops::Range;
 use std::borrow::Cow;
 
+use fearless_simd::Level;
 use glam::DVec2;
 
 use self::chords::{BLOCK, Chords, Occluder};
@@ -56,22 +57,43 @@ pub(crate) struct Fusion {
     meet: Meet,
 }
 
-/// What is known of a pixel after some of the casts.
-#[derive(Debug, Clone, Copy)]
+/// What is known of a pixel after some of the casts: at first nothing.
+#[derive(Debug, Clone, Copy, Default)]
 struct Pixel {
-    /// What they hold back of the light, and what of it has met none of them.
+    /// What they hold back of the light, and what of it has met any of them.
     held: f32,
-    free: f32,
-    /// How many of them hide a part of the disc.
-    partial: u16,
+    met: f32,
+    /// What the first two that hide a part of the disc hide, the second negative if there are more.
+    partial: [f32; 2],
 }
 
 impl Pixel {
-    const LIT: Self = Self {
-        held: 0.0,
-        free: 1.0,
-        partial: 0,
-    };
+    fn add(&mut self, density: f32, strength: f32, opacity: f32) {
+        let hides = opacity * density * (1.0 - self.met);
+        self.held += strength * hides;
+        self.met += hides;
+        if density > 0.0 && density < 1.0 {
+            match &mut self.partial {
+                [first, _] if *first == 0.0 => *first = density,
+                [_, second] if *second == 0.0 => *second = density,
+                [_, second] => *second = -second.abs(),
+            }
+        }
+    }
+
+    fn mend(&mut self, by: f32) {
+        self.held = (self.held + by).clamp(0.0, 1.0);
+    }
+
+    /// Whether several casts hide a part of the disc.
+    fn is_shared(&self) -> bool {
+        self.partial[1] != 0.0
+    }
+
+    /// What two casts hide, if no more than two hide a part of the disc.
+    fn pair(&self) -> Option<[f32; 2]> {
+        (self.partial[1] > 0.0).then_some(self.partial)
+    }
 }
 
 /// A cast as pixels see it: its box in pixels, and what of it its chords need.
@@ -118,7 +140,7 @@ impl Fusion {
         };
         let width = columns.len();
         self.pixels.clear();
-        self.pixels.resize(width * rows.len(), Pixel::LIT);
+        self.pixels.resize(width * rows.len(), Pixel::default());
         let first = [columns.start, rows.start];
         let window = grid.window(first, [columns.end, rows.end]);
         let hidden = options.hidden.map(|hidden| hidden.window(&window, first));
@@ -131,14 +153,7 @@ impl Fusion {
             let mut pass = Each {
                 pixels: &mut self.pixels,
                 stride: width,
-                put: |pixel: &mut Pixel, density: f32| {
-                    let hides = opacity * density * pixel.free;
-                    pixel.held += strength * hides;
-                    pixel.free -= hides;
-                    if density > 0.0 && density < 1.0 {
-                        pixel.partial += 1;
-                    }
-                },
+                put: |pixel: &mut Pixel, density: f32| pixel.add(density, strength, opacity),
             };
             cast.shadow.draw(&window, &options, scratch, &mut pass);
         }
@@ -158,15 +173,15 @@ impl Fusion {
             let pixels = &self.pixels[row * width..][..width];
             self.row.clear();
             self.row.extend(pixels.iter().map(|pixel| pixel.held));
-            let mut start = 0;
-            for run in pixels.chunk_by(|a, b| (a.held == 0.0) == (b.held == 0.0)) {
-                let end = start + run.len();
-                if run[0].held != 0.0 {
-                    let on_grid = columns.start + start as u32..columns.start + end as u32;
-                    sink.values(rows.start + row as u32, on_grid, &self.row[start..end]);
-                }
-                start = end;
-            }
+            let is_held = |held: &f32| *held != 0.0;
+            let (Some(first), Some(last)) = (
+                self.row.iter().position(is_held),
+                self.row.iter().rposition(is_held),
+            ) else {
+                continue;
+            };
+            let on_grid = columns.start + first as u32..columns.start + last as u32 + 1;
+            sink.values(rows.start + row as u32, on_grid, &self.row[first..=last]);
         }
     }
 }
@@ -215,22 +230,24 @@ impl Member {
         })
     }
 
-    /// Whether the pixel that begins at `corner` may see it.
-    fn meets(&self, corner: DVec2) -> bool {
-        let meets_box = self.min.cmplt(corner + 1.0).all() && self.max.cmpgt(corner).all();
+    /// Whether the pixel that begins at `corner` may see it, and for how many pixels to the right that stays so.
+    fn is_near(&self, corner: DVec2) -> (bool, f64) {
         match &self.kind {
             // Of casters that are drawn as one those far away are not to matter.
             Kind::Level(occluder) => {
                 let reach = occluder.radius + averaged_side(occluder.radius) / 2.0;
-                meets_box && occluder.is_near(corner, reach)
+                occluder.is_near(corner, reach)
             }
-            Kind::Tilted(_) => meets_box,
+            Kind::Tilted(_) => {
+                let is_near = self.min.cmplt(corner + 1.0).all() && self.max.cmpgt(corner).all();
+                (is_near, 1.0)
+            }
         }
     }
 }
 
 /// How far lines in place of curves may move what casters hide together, in levels.
-const FLATNESS: f64 = 0.05;
+const FLATNESS: f64 = 0.2;
 
 /// The disc of a hard shadow, in pixels: next to the pixel's square it is a point.
 const LEAST_RADIUS: f64 = 1e-3;
@@ -246,9 +263,36 @@ fn held<'a>(members: impl IntoIterator<Item = &'a &'a Member>, hidden: &[f32]) -
     held
 }
 
+/// By how much more members hold back for each unit of the disc that both of a pair hide beyond chance; what the others hide is
+/// as given.
+fn cross(members: &[&Member], [a, b]: [usize; 2], hidden: &mut [f32]) -> f32 {
+    let mut at = |of_a: f32, of_b: f32| {
+        (hidden[a], hidden[b]) = (of_a, of_b);
+        held(members, hidden)
+    };
+    at(1.0, 1.0) - at(1.0, 0.0) - at(0.0, 1.0) + at(0.0, 0.0)
+}
+
+/// The sine of the largest angle between parallel lines.
+const PARALLEL: f64 = 1e-6;
+
+impl Default for Meet {
+    fn default() -> Self {
+        Self {
+            level: Level::new(),
+            chords: Chords::default(),
+            densities: Vec::new(),
+            shared: Vec::new(),
+            partial: Vec::new(),
+            hidden: Vec::new(),
+        }
+    }
+}
+
 /// Memory to follow the light where casters meet.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 struct Meet {
+    level: Level,
     chords: Chords,
     densities: Vec<[f32; BLOCK]>,
     /// What both of two casters hide, as far as it was asked for.
@@ -261,30 +305,94 @@ impl Meet {
     /// Mends the pixels of a row, the first of which begins at `start`, from which several members hide a part of the disc.
     fn mend(&mut self, members: &[Member], start: DVec2, pixels: &mut [Pixel]) {
         let mut index = 0;
-        while let Some(next) = pixels[index..].iter().position(|pixel| pixel.partial > 1) {
+        while let Some(next) = pixels[index..].iter().position(Pixel::is_shared) {
             index += next;
             let corner = start + DVec2::new(index as f64, 0.0);
-            let near: Vec<&Member> = members
-                .iter()
-                .filter(|member| member.meets(corner))
-                .collect();
-            let is_tilted = |member: &&Member| matches!(member.kind, Kind::Tilted(_));
-            let most = if near.iter().any(is_tilted) { 1 } else { BLOCK };
             // As far as the same members are near, so that it does not matter where a picture begins.
-            let rest = pixels[index..].iter().take(most).enumerate();
-            let count = rest
-                .take_while(|(lane, pixel)| {
-                    let at = corner + DVec2::new(*lane as f64, 0.0);
-                    pixel.partial > 1
-                        && members.iter().filter(|member| member.meets(at)).count() == near.len()
-                        && near.iter().all(|member| member.meets(at))
-                })
-                .count();
-            let mends = self.mends(&near, corner);
-            for (pixel, mend) in pixels[index..index + count].iter_mut().zip(mends) {
-                pixel.held = (pixel.held + mend).clamp(0.0, 1.0);
+            let mut near = Vec::with_capacity(members.len());
+            let mut same = BLOCK as f64;
+            for member in members {
+                let (is_near, count) = member.is_near(corner);
+                same = same.min(count);
+                if is_near {
+                    near.push(member);
+                }
+            }
+            let count = pixels[index..]
+                .iter()
+                .take(same as usize)
+                .take_while(|pixel| pixel.is_shared())
+                .count()
+                .max(1);
+            let run = &mut pixels[index..index + count];
+            if !self.mend_lines(&near, corner, run) {
+                self.mend_run(&near, corner, run);
             }
             index += count;
+        }
+    }
+
+    /// Mends pixels from which two members show one straight edge each, and the two are parallel: one hides what the other does,
+    /// or what it does not. Tells whether they were such.
+    fn mend_lines(&self, near: &[&Member], corner: DVec2, run: &mut [Pixel]) -> bool {
+        let [Kind::Level(a), Kind::Level(b)] =
+            near.iter().map(|member| &member.kind).collect::<Vec<_>>()[..]
+        else {
+            return false;
+        };
+        if averaged_side(a.radius.min(b.radius)) > 0.0 {
+            return false;
+        }
+        let [Some(of_a), Some(of_b)] =
+            [a, b].map(|occluder| occluder.single_line(corner + 0.5, run.len()))
+        else {
+            return false;
+        };
+        if of_a.perp_dot(of_b).abs() > PARALLEL * of_a.length() * of_b.length() {
+            return false;
+        }
+        let is_same_way = of_a.dot(of_b) > 0.0;
+        for pixel in run {
+            let Some([a, b]) = pixel.pair() else {
+                continue;
+            };
+            let shared = if is_same_way {
+                a.min(b)
+            } else {
+                (a + b - 1.0).max(0.0)
+            };
+            pixel.mend(cross(near, [0, 1], &mut [a, b]) * (shared - a * b));
+        }
+        true
+    }
+
+    fn mend_run(&mut self, near: &[&Member], corner: DVec2, run: &mut [Pixel]) {
+        let is_pair = near.len() == 2
+            && near.iter().all(|member| match &member.kind {
+                Kind::Level(occluder) => averaged_side(occluder.radius) == 0.0,
+                Kind::Tilted(_) => false,
+            });
+        if is_pair {
+            self.place(near, corner + 0.5);
+            let mut shared = [0.0; BLOCK];
+            self.chords.shared(self.level, [0, 1], 0.0, &mut shared);
+            for (pixel, shared) in run.iter_mut().zip(shared) {
+                let Some([a, b]) = pixel.pair() else {
+                    continue;
+                };
+                pixel.mend(cross(near, [0, 1], &mut [a, b]) * (shared - a * b));
+            }
+            return;
+        }
+        // Of many radii each point sees a polygon of its own.
+        let is_tilted = |member: &&Member| matches!(member.kind, Kind::Tilted(_));
+        let most = if near.iter().any(is_tilted) { 1 } else { BLOCK };
+        for (chunk, pixels) in run.chunks_mut(most).enumerate() {
+            let corner = corner + DVec2::new((chunk * most) as f64, 0.0);
+            let mends = self.mends(near, corner);
+            for (pixel, mend) in pixels.iter_mut().zip(mends) {
+                pixel.mend(mend);
+            }
         }
     }
 
@@ -370,7 +478,7 @@ impl Meet {
         let known = self.shared.iter().position(|(of, _)| *of == pair);
         let index = known.unwrap_or_else(|| {
             let mut shared = [0.0; BLOCK];
-            self.chords.shared(pair, offset, &mut shared);
+            self.chords.shared(self.level, pair, offset, &mut shared);
             self.shared.push((pair, shared));
             self.shared.len() - 1
         });

@@ -5,7 +5,9 @@
 //! outline's crossings with that line. Crossings of a row of pixels are found once; along the row only their distances change.
 
 use core::f64::consts::{FRAC_1_PI, FRAC_PI_2};
+use core::ops::Range;
 
+use fearless_simd::{Level, Simd, dispatch};
 use glam::DVec2;
 use libm::{asin, cos, sin};
 
@@ -15,7 +17,7 @@ use crate::tilted::Circle;
 pub(super) const BLOCK: usize = 32;
 
 /// Into so many equal angles the disc's height is cut, and again wherever an outline has a top, a bottom or a level edge.
-const PIECES: u32 = 16;
+const PIECES: u32 = 12;
 
 /// Two nodes of the Gauss-Legendre rule a piece, from -1 to 1 (Abramowitz & Stegun 1964, table 25.4).
 const GAUSS_2: f64 = 0.577_350_269_189_625_8;
@@ -37,6 +39,8 @@ struct Loop {
     max: DVec2,
     /// The outline's lines but the level ones, each from its lower y to its higher one.
     edges: Vec<[DVec2; 2]>,
+    /// All lines, each with the area on its left where y points up.
+    lines: Vec<[DVec2; 2]>,
     /// Where the outline turns up or down: there the hidden part of a chord begins or ends at once.
     turns: Vec<f64>,
 }
@@ -53,13 +57,55 @@ impl Occluder {
         }
     }
 
-    /// Whether the square from `corner` to one pixel on is within `reach` of the box of a loop.
-    pub(super) fn is_near(&self, corner: DVec2, reach: f64) -> bool {
-        self.loops.iter().any(|of_loop| {
+    /// Whether the square from `corner` to one pixel on is within `reach` of the box of a loop, and for how many pixels to the
+    /// right that stays so.
+    pub(super) fn is_near(&self, corner: DVec2, reach: f64) -> (bool, f64) {
+        let mut all = (false, f64::MAX);
+        for of_loop in &self.loops {
             let corner = corner - of_loop.base;
-            (of_loop.min - reach).cmplt(corner + 1.0).all()
-                && (of_loop.max + reach).cmpgt(corner).all()
-        })
+            if corner.y + 1.0 <= of_loop.min.y - reach || corner.y >= of_loop.max.y + reach {
+                continue;
+            }
+            let (first, last) = (
+                of_loop.min.x - reach - 1.0 - corner.x,
+                of_loop.max.x + reach - corner.x,
+            );
+            let is_near = first < 0.0 && last > 0.0;
+            if is_near != all.0 && is_near {
+                all = (true, last.ceil());
+            } else if is_near {
+                all.1 = all.1.max(last.ceil());
+            } else if !all.0 && first >= 0.0 {
+                all.1 = all.1.min(first.floor() + 1.0);
+            }
+        }
+        all
+    }
+
+    /// The direction of the outline where the discs about a row of points meet it in a single line from one side to the other, or
+    /// none. The points are `count` whole pixels from `at` on.
+    pub(super) fn single_line(&self, at: DVec2, count: usize) -> Option<DVec2> {
+        let mut single = None;
+        for of_loop in &self.loops {
+            let at = at - of_loop.base;
+            let min = at - self.radius;
+            let max = at + self.radius + DVec2::new(count as f64 - 1.0, 0.0);
+            if of_loop.min.cmpgt(max).any() || of_loop.max.cmplt(min).any() {
+                continue;
+            }
+            for &[from, to] in &of_loop.lines {
+                let (low, high) = (from.min(to), from.max(to));
+                if low.cmpgt(max).any() || high.cmplt(min).any() {
+                    continue;
+                }
+                let spans = |axis: usize| low[axis] <= min[axis] && high[axis] >= max[axis];
+                if single.is_some() || !(spans(0) || spans(1)) {
+                    return None;
+                }
+                single = Some(to - from);
+            }
+        }
+        single
     }
 
     /// A caster of many radii as one point sees it, on the light's unit disc.
@@ -87,6 +133,7 @@ impl Loop {
             min: DVec2::ZERO,
             max: DVec2::ZERO,
             edges: Vec::new(),
+            lines: Vec::new(),
             turns: Vec::new(),
         };
         of_loop.min = points.iter().copied().fold(DVec2::MAX, DVec2::min);
@@ -98,6 +145,7 @@ impl Loop {
             if (from.y - before.y) * (to.y - from.y) <= 0.0 {
                 of_loop.turns.push(from.y);
             }
+            of_loop.lines.push([from, to]);
             if from.y < to.y {
                 of_loop.edges.push([from, to]);
             } else if to.y < from.y {
@@ -113,14 +161,17 @@ impl Loop {
 /// The chords of one row of points, and where casters hide them.
 #[derive(Debug, Default)]
 pub(super) struct Chords {
-    heights: Vec<f64>,
+    /// The nodes of each piece that no turn cuts.
+    pieces: Vec<[Node; 2]>,
+    /// The angles at which outlines turn.
+    turns: Vec<f64>,
     nodes: Vec<Node>,
     /// A list for each caster.
     hidden: Vec<Spans>,
-    /// Of the caster that is gone through: edges that the row's discs may meet, with where the first point is for them, and one
-    /// chord's crossings.
-    near: Vec<(DVec2, [DVec2; 2])>,
-    crossings: Vec<f64>,
+    /// Of the caster that is gone through: edges that the row's discs may meet, with where the first point is for them and the
+    /// chords that they cross; and up to where each chord's crossings are known.
+    near: Vec<(DVec2, [DVec2; 2], Range<usize>)>,
+    filled: Vec<usize>,
     /// Memory to walk along one chord.
     ends: Vec<(f32, usize, bool)>,
     inside: Vec<f32>,
@@ -134,12 +185,12 @@ struct Node {
     weight: f32,
 }
 
-/// The spans that a caster hides of all chords, one chord after the other.
+/// The spans that a caster hides of all chords.
 #[derive(Debug, Default)]
 struct Spans {
-    /// From and to, in pixels from the first point.
-    spans: Vec<[f64; 2]>,
-    /// Where each chord's spans begin, and where the last one's end.
+    /// Where they begin and end, in pixels from the first point, from left to right, one chord after the other.
+    crossings: Vec<f64>,
+    /// Where each chord's crossings begin, and where the last one's end.
     starts: Vec<usize>,
     /// 1 over the penumbra radius in pixels.
     factor: f32,
@@ -154,9 +205,10 @@ impl Chords {
         self.find_nodes(casters.clone());
         self.hidden.resize_with(casters.len(), Spans::default);
         for ((caster, at), hidden) in casters.zip(&mut self.hidden) {
-            hidden.spans.clear();
-            hidden.starts.clear();
             hidden.factor = (1.0 / caster.radius) as f32;
+            // How many crossings each chord has, then where they begin.
+            hidden.starts.clear();
+            hidden.starts.resize(self.nodes.len() + 1, 0);
             self.near.clear();
             for of_loop in &caster.loops {
                 let at = at - of_loop.base;
@@ -165,55 +217,72 @@ impl Chords {
                     continue;
                 }
                 let meets = |edge: &&[DVec2; 2]| edge[0].y <= high && edge[1].y >= low;
-                let near = of_loop.edges.iter().filter(meets);
-                self.near.extend(near.map(|edge| (at, *edge)));
-            }
-            for node in &self.nodes {
-                hidden.starts.push(hidden.spans.len());
-                self.crossings.clear();
-                for (at, [from, to]) in &self.near {
-                    let level = at.y + caster.radius * node.height;
-                    if from.y <= level && level < to.y {
-                        let share = (level - from.y) / (to.y - from.y);
-                        self.crossings.push(from.x + share * (to.x - from.x) - at.x);
+                for edge in of_loop.edges.iter().filter(meets) {
+                    let [first, end] = edge.map(|point| {
+                        let height = (point.y - at.y) / caster.radius;
+                        self.nodes.partition_point(|node| node.height < height)
+                    });
+                    if first < end {
+                        self.near.push((at, *edge, first..end));
+                        for count in &mut hidden.starts[first..end] {
+                            *count += 1;
+                        }
                     }
                 }
-                self.crossings.sort_by(f64::total_cmp);
-                let pairs = self.crossings.chunks_exact(2);
-                hidden.spans.extend(pairs.map(|pair| [pair[0], pair[1]]));
             }
-            hidden.starts.push(hidden.spans.len());
+            let mut total = 0;
+            for start in &mut hidden.starts {
+                total += core::mem::replace(start, total);
+            }
+            hidden.crossings.clear();
+            hidden.crossings.resize(total, 0.0);
+            self.filled.clear();
+            self.filled.extend_from_slice(&hidden.starts);
+            for (at, [from, to], chords) in &self.near {
+                let slope = (to.x - from.x) / (to.y - from.y);
+                for chord in chords.clone() {
+                    let level = at.y + caster.radius * self.nodes[chord].height;
+                    let slot = &mut self.filled[chord];
+                    hidden.crossings[*slot] = from.x + (level - from.y) * slope - at.x;
+                    *slot += 1;
+                }
+            }
+            for chord in hidden.starts.windows(2) {
+                hidden.crossings[chord[0]..chord[1]].sort_unstable_by(f64::total_cmp);
+            }
         }
     }
 
     fn find_nodes<'a>(&mut self, casters: impl Iterator<Item = (&'a Occluder, DVec2)>) {
-        let heights = &mut self.heights;
-        heights.clear();
-        heights.extend(
-            (0..=PIECES).map(|i| FRAC_PI_2 * (2.0 * f64::from(i) / f64::from(PIECES) - 1.0)),
-        );
+        let turns = &mut self.turns;
+        turns.clear();
         for (caster, at) in casters {
             for of_loop in &caster.loops {
                 let height = |turn: &f64| (turn - (at.y - of_loop.base.y)) / caster.radius;
                 let inside = of_loop.turns.iter().map(height);
-                heights.extend(inside.filter(|v| v.abs() < 1.0).map(asin));
+                turns.extend(inside.filter(|v| v.abs() < 1.0).map(asin));
             }
         }
-        heights.sort_by(f64::total_cmp);
+        turns.sort_by(f64::total_cmp);
+        if self.pieces.is_empty() {
+            let piece = |index: u32| nodes(angle(index), angle(index + 1));
+            self.pieces = (0..PIECES).map(piece).collect();
+        }
         self.nodes.clear();
-        for piece in heights.windows(2) {
-            let half = (piece[1] - piece[0]) / 2.0;
-            if half < 1e-9 {
+        let mut turns = turns.iter().copied().peekable();
+        for (index, whole) in (0..PIECES).zip(&self.pieces) {
+            let (mut from, to) = (angle(index), angle(index + 1));
+            if turns.peek().is_none_or(|&turn| turn >= to) {
+                self.nodes.extend(whole);
                 continue;
             }
-            let middle = piece[0] + half;
-            for angle in [middle - GAUSS_2 * half, middle + GAUSS_2 * half] {
-                self.nodes.push(Node {
-                    height: sin(angle),
-                    half: cos(angle) as f32,
-                    weight: (half * cos(angle) * FRAC_1_PI) as f32,
-                });
+            while let Some(turn) = turns.next_if(|&turn| turn < to) {
+                if turn - from > 1e-9 {
+                    self.nodes.extend(nodes(from, turn));
+                    from = turn;
+                }
             }
+            self.nodes.extend(nodes(from, to));
         }
     }
 
@@ -235,7 +304,18 @@ impl Chords {
     }
 
     /// The part of the disc that both of two casters hide from such points.
-    pub(super) fn shared(&self, pair: [usize; 2], offset: f64, out: &mut [f32; BLOCK]) {
+    pub(super) fn shared(
+        &self,
+        level: Level,
+        pair: [usize; 2],
+        offset: f64,
+        out: &mut [f32; BLOCK],
+    ) {
+        dispatch!(level, simd => simd.vectorize(#[inline(always)] || self.add_shared(pair, offset, out)));
+    }
+
+    #[inline(always)]
+    fn add_shared(&self, pair: [usize; 2], offset: f64, out: &mut [f32; BLOCK]) {
         let [a, b] = pair.map(|caster| &self.hidden[caster]);
         let mut sums = [0.0; BLOCK];
         for (index, node) in self.nodes.iter().enumerate() {
@@ -285,9 +365,29 @@ impl Chords {
     }
 }
 
+/// Where a piece of the disc's height begins, as an angle.
+fn angle(piece: u32) -> f64 {
+    FRAC_PI_2 * (2.0 * f64::from(piece) / f64::from(PIECES) - 1.0)
+}
+
+/// The nodes between two angles.
+fn nodes(from: f64, to: f64) -> [Node; 2] {
+    let half = (to - from) / 2.0;
+    [-GAUSS_2, GAUSS_2].map(|node| {
+        let angle = from + half + node * half;
+        Node {
+            height: sin(angle),
+            half: cos(angle) as f32,
+            weight: (half * cos(angle) * FRAC_1_PI) as f32,
+        }
+    })
+}
+
 impl Spans {
     fn of(&self, chord: usize) -> &[[f64; 2]] {
-        &self.spans[self.starts[chord]..self.starts[chord + 1]]
+        self.crossings[self.starts[chord]..self.starts[chord + 1]]
+            .as_chunks()
+            .0
     }
 
     /// A distance in pixels in the unit of the disc.
