@@ -63,21 +63,28 @@ struct Pixel {
     /// What they hold back of the light, and what of it has met any of them.
     held: f32,
     met: f32,
-    /// What the first two that hide a part of the disc hide, the second negative if there are more.
-    partial: [f32; 2],
+    /// What the first two that hide a part of the disc hide.
+    densities: [f32; 2],
+    /// The casts that hide a part of the disc, and those that hide all of it, a bit each: the last bit stands for all from there on.
+    partial: u64,
+    full: u64,
 }
 
+/// The first cast that has no bit for itself.
+const REST: usize = 63;
+
 impl Pixel {
-    fn add(&mut self, density: f32, strength: f32, opacity: f32) {
-        let hides = opacity * density * (1.0 - self.met);
-        self.held += strength * hides;
+    fn add(&mut self, density: f32, cast: &Cast, bit: u64) {
+        let hides = cast.opacity as f32 * density * (1.0 - self.met);
+        self.held += cast.strength as f32 * hides;
         self.met += hides;
-        if density > 0.0 && density < 1.0 {
-            match &mut self.partial {
-                [first, _] if *first == 0.0 => *first = density,
-                [_, second] if *second == 0.0 => *second = density,
-                [_, second] => *second = -second.abs(),
+        if density >= 1.0 {
+            self.full |= bit;
+        } else if density > 0.0 {
+            if let Some(to) = self.densities.get_mut(self.partial.count_ones() as usize) {
+                *to = density;
             }
+            self.partial |= bit;
         }
     }
 
@@ -87,19 +94,12 @@ impl Pixel {
 
     /// Whether several casts hide a part of the disc.
     fn is_shared(&self) -> bool {
-        self.partial[1] != 0.0
-    }
-
-    /// What two casts hide, if no more than two hide a part of the disc.
-    fn pair(&self) -> Option<[f32; 2]> {
-        (self.partial[1] > 0.0).then_some(self.partial)
+        self.partial & (self.partial.wrapping_sub(1) | 1 << REST) != 0
     }
 }
 
-/// A cast as pixels see it: its box in pixels, and what of it its chords need.
+/// A cast, and what of it its chords need.
 struct Member {
-    min: DVec2,
-    max: DVec2,
     strength: f32,
     opacity: f32,
     kind: Kind,
@@ -148,12 +148,12 @@ impl Fusion {
             hidden: hidden.as_ref(),
             ..*options
         };
-        for cast in group {
-            let (strength, opacity) = (cast.strength as f32, cast.opacity as f32);
+        for (index, cast) in group.iter().enumerate() {
+            let bit = 1 << index.min(REST);
             let mut pass = Each {
                 pixels: &mut self.pixels,
                 stride: width,
-                put: |pixel: &mut Pixel, density: f32| pixel.add(density, strength, opacity),
+                put: |pixel: &mut Pixel, density: f32| pixel.add(density, cast, bit),
             };
             cast.shadow.draw(&window, &options, scratch, &mut pass);
         }
@@ -201,7 +201,7 @@ fn seen_pixels(group: &[&Cast], grid: &Grid) -> Option<[Range<u32>; 2]> {
 
 impl Member {
     fn new(cast: &Cast, scale: f64) -> Option<Self> {
-        let (min, max) = cast.shadow.reach(scale)?;
+        cast.shadow.reach(scale)?;
         let kind = match &cast.shadow {
             AnyShadow::Level(shadow) => {
                 let radius = shadow.radius();
@@ -222,26 +222,17 @@ impl Member {
             AnyShadow::Alpha(_) => return None,
         };
         Some(Self {
-            min,
-            max,
             strength: cast.strength as f32,
             opacity: cast.opacity as f32,
             kind,
         })
     }
 
-    /// Whether the pixel that begins at `corner` may see it, and for how many pixels to the right that stays so.
-    fn is_near(&self, corner: DVec2) -> (bool, f64) {
+    /// The side of the square about its centre that a pixel sees it through, in pixels.
+    fn averaged_side(&self) -> f64 {
         match &self.kind {
-            // Of casters that are drawn as one those far away are not to matter.
-            Kind::Level(occluder) => {
-                let reach = occluder.radius + averaged_side(occluder.radius) / 2.0;
-                occluder.is_near(corner, reach)
-            }
-            Kind::Tilted(_) => {
-                let is_near = self.min.cmplt(corner + 1.0).all() && self.max.cmpgt(corner).all();
-                (is_near, 1.0)
-            }
+            Kind::Level(occluder) => averaged_side(occluder.radius),
+            Kind::Tilted(_) => 0.0,
         }
     }
 }
@@ -253,12 +244,12 @@ const FLATNESS: f64 = 0.2;
 const LEAST_RADIUS: f64 = 1e-3;
 
 /// What members hold back together where they hide these parts of the light one by one, and these are independent.
-fn held<'a>(members: impl IntoIterator<Item = &'a &'a Member>, hidden: &[f32]) -> f32 {
-    let (mut held, mut free) = (0.0, 1.0);
-    for (member, hidden) in members.into_iter().zip(hidden) {
-        let hides = member.opacity * hidden * free;
+fn held(members: &[&Member], hidden: &[f32]) -> f32 {
+    let (mut held, mut met) = (0.0, 0.0);
+    for (member, hidden) in members.iter().zip(hidden) {
+        let hides = member.opacity * hidden * (1.0 - met);
         held += member.strength * hides;
-        free -= hides;
+        met += hides;
     }
     held
 }
@@ -276,200 +267,261 @@ fn cross(members: &[&Member], [a, b]: [usize; 2], hidden: &mut [f32]) -> f32 {
 /// The sine of the largest angle between parallel lines.
 const PARALLEL: f64 = 1e-6;
 
-impl Default for Meet {
-    fn default() -> Self {
-        Self {
-            level: Level::new(),
-            chords: Chords::default(),
-            densities: Vec::new(),
-            shared: Vec::new(),
-            partial: Vec::new(),
-            hidden: Vec::new(),
-        }
-    }
-}
+/// A density that is as good as 0, and as far from 1 as good as 1.
+const NOTHING: f32 = 1e-4;
 
 /// Memory to follow the light where casters meet.
 #[derive(Debug)]
 struct Meet {
     level: Level,
     chords: Chords,
+    /// For each member the lines that discs about the row's points may meet.
+    lines: Vec<Vec<[DVec2; 2]>>,
     densities: Vec<[f32; BLOCK]>,
     /// What both of two casters hide, as far as it was asked for.
     shared: Vec<([usize; 2], [f32; BLOCK])>,
-    partial: Vec<usize>,
     hidden: Vec<f32>,
+}
+
+impl Default for Meet {
+    fn default() -> Self {
+        Self {
+            level: Level::new(),
+            chords: Chords::default(),
+            lines: Vec::new(),
+            densities: Vec::new(),
+            shared: Vec::new(),
+            hidden: Vec::new(),
+        }
+    }
+}
+
+/// The members that pixels of a run see, from the strongest to the weakest.
+struct Company<'a> {
+    members: Vec<&'a Member>,
+    /// Which of them hide a part of the disc, as far as is known; all others hide all of it.
+    partial: Vec<usize>,
+}
+
+impl<'a> Company<'a> {
+    fn of(pixel: &Pixel, members: &'a [Member]) -> Self {
+        let mut company = Self {
+            members: Vec::new(),
+            partial: Vec::new(),
+        };
+        let has = |bits: u64, index: usize| bits >> index.min(REST) & 1 == 1;
+        for (index, member) in members.iter().enumerate() {
+            let is_partial = has(pixel.partial, index) || index >= REST && has(pixel.full, index);
+            if is_partial {
+                company.partial.push(company.members.len());
+            }
+            if is_partial || has(pixel.full, index) {
+                company.members.push(member);
+            }
+        }
+        company
+    }
+
+    /// What the members hide, if those that hide a part hide nothing.
+    fn full(&self) -> Vec<f32> {
+        let mut hidden = vec![1.0; self.members.len()];
+        for &index in &self.partial {
+            hidden[index] = 0.0;
+        }
+        hidden
+    }
+
+    fn partial(&self) -> impl ExactSizeIterator<Item = &'a Member> + Clone {
+        self.partial.iter().map(|&index| self.members[index])
+    }
 }
 
 impl Meet {
     /// Mends the pixels of a row, the first of which begins at `start`, from which several members hide a part of the disc.
     fn mend(&mut self, members: &[Member], start: DVec2, pixels: &mut [Pixel]) {
         let mut index = 0;
+        self.lines.iter_mut().for_each(Vec::clear);
+        self.lines.resize_with(members.len(), Vec::new);
+        let mut is_row_known = false;
         while let Some(next) = pixels[index..].iter().position(Pixel::is_shared) {
-            index += next;
-            let corner = start + DVec2::new(index as f64, 0.0);
-            // As far as the same members are near, so that it does not matter where a picture begins.
-            let mut near = Vec::with_capacity(members.len());
-            let mut same = BLOCK as f64;
-            for member in members {
-                let (is_near, count) = member.is_near(corner);
-                same = same.min(count);
-                if is_near {
-                    near.push(member);
+            if !is_row_known {
+                is_row_known = true;
+                for (member, lines) in members.iter().zip(&mut self.lines) {
+                    if let Kind::Level(occluder) = &member.kind {
+                        occluder.lines_near(start.y + 0.5, lines);
+                    }
                 }
             }
+            index += next;
+            let first = pixels[index];
             let count = pixels[index..]
                 .iter()
-                .take(same as usize)
-                .take_while(|pixel| pixel.is_shared())
-                .count()
-                .max(1);
+                .take(BLOCK)
+                .take_while(|pixel| (pixel.partial, pixel.full) == (first.partial, first.full))
+                .count();
+            let company = Company::of(&first, members);
+            let corner = start + DVec2::new(index as f64, 0.0);
             let run = &mut pixels[index..index + count];
-            if !self.mend_lines(&near, corner, run) {
-                self.mend_run(&near, corner, run);
+            match *company.partial {
+                [a, b]
+                    if first.partial >> REST == 0
+                        && company
+                            .partial()
+                            .all(|member| member.averaged_side() == 0.0) =>
+                {
+                    let lowest = first.partial.trailing_zeros() as usize;
+                    let highest = REST - first.partial.leading_zeros() as usize;
+                    self.mend_pair(&company, [a, b], [lowest, highest], corner, run);
+                }
+                _ => self.mend_all(&company, corner, run),
             }
             index += count;
         }
     }
 
-    /// Mends pixels from which two members show one straight edge each, and the two are parallel: one hides what the other does,
-    /// or what it does not. Tells whether they were such.
-    fn mend_lines(&self, near: &[&Member], corner: DVec2, run: &mut [Pixel]) -> bool {
-        let [Kind::Level(a), Kind::Level(b)] =
-            near.iter().map(|member| &member.kind).collect::<Vec<_>>()[..]
-        else {
-            return false;
-        };
-        if averaged_side(a.radius.min(b.radius)) > 0.0 {
-            return false;
-        }
-        let [Some(of_a), Some(of_b)] =
-            [a, b].map(|occluder| occluder.single_line(corner + 0.5, run.len()))
-        else {
-            return false;
-        };
-        if of_a.perp_dot(of_b).abs() > PARALLEL * of_a.length() * of_b.length() {
-            return false;
-        }
-        let is_same_way = of_a.dot(of_b) > 0.0;
-        for pixel in run {
-            let Some([a, b]) = pixel.pair() else {
-                continue;
-            };
-            let shared = if is_same_way {
-                a.min(b)
-            } else {
-                (a + b - 1.0).max(0.0)
-            };
-            pixel.mend(cross(near, [0, 1], &mut [a, b]) * (shared - a * b));
-        }
-        true
-    }
-
-    fn mend_run(&mut self, near: &[&Member], corner: DVec2, run: &mut [Pixel]) {
-        let is_pair = near.len() == 2
-            && near.iter().all(|member| match &member.kind {
-                Kind::Level(occluder) => averaged_side(occluder.radius) == 0.0,
-                Kind::Tilted(_) => false,
-            });
-        if is_pair {
-            self.place(near, corner + 0.5);
-            let mut shared = [0.0; BLOCK];
-            self.chords.shared(self.level, [0, 1], 0.0, &mut shared);
-            for (pixel, shared) in run.iter_mut().zip(shared) {
-                let Some([a, b]) = pixel.pair() else {
-                    continue;
-                };
-                pixel.mend(cross(near, [0, 1], &mut [a, b]) * (shared - a * b));
-            }
+    /// Mends pixels from which two members hide a part of the disc, of which the densities are known: `pair` among the company's,
+    /// `indices` among all.
+    fn mend_pair(
+        &mut self,
+        company: &Company<'_>,
+        pair: [usize; 2],
+        indices: [usize; 2],
+        corner: DVec2,
+        run: &mut [Pixel],
+    ) {
+        let mut hidden = company.full();
+        let cross = cross(&company.members, pair, &mut hidden);
+        if cross == 0.0 {
             return;
         }
+        let mut shared = None;
+        for lane in 0..run.len() {
+            let [a, b] = run[lane].densities;
+            let at = corner + DVec2::new(lane as f64 + 0.5, 0.5);
+            let together = match self.parallel(company, pair, indices, at) {
+                // One hides what the other does, or what it does not.
+                Some(true) => a.min(b),
+                Some(false) => (a + b - 1.0).max(0.0),
+                None => {
+                    let shared = shared.get_or_insert_with(|| {
+                        let mut shared = [0.0; BLOCK];
+                        place(&mut self.chords, company, corner + 0.5);
+                        self.chords.shared(self.level, [0, 1], 0.0, &mut shared);
+                        shared
+                    });
+                    shared[lane]
+                }
+            };
+            run[lane].mend(cross * (together - a * b));
+        }
+    }
+
+    /// Whether the disc about a point shows a single line of each of a pair, and these are parallel: then, whether they face one way.
+    fn parallel(
+        &self,
+        company: &Company<'_>,
+        pair: [usize; 2],
+        indices: [usize; 2],
+        at: DVec2,
+    ) -> Option<bool> {
+        let single = |of: usize| match &company.members[pair[of]].kind {
+            Kind::Level(occluder) => occluder.single_line(&self.lines[indices[of]], at),
+            Kind::Tilted(_) => None,
+        };
+        let (a, b) = (single(0)?, single(1)?);
+        let is_parallel = a.perp_dot(b).abs() <= PARALLEL * a.length() * b.length();
+        is_parallel.then_some(a.dot(b) > 0.0)
+    }
+
+    fn mend_all(&mut self, company: &Company<'_>, corner: DVec2, run: &mut [Pixel]) {
         // Of many radii each point sees a polygon of its own.
-        let is_tilted = |member: &&Member| matches!(member.kind, Kind::Tilted(_));
-        let most = if near.iter().any(is_tilted) { 1 } else { BLOCK };
+        let is_tilted = |member: &Member| matches!(member.kind, Kind::Tilted(_));
+        let most = if company.partial().any(is_tilted) {
+            1
+        } else {
+            BLOCK
+        };
         for (chunk, pixels) in run.chunks_mut(most).enumerate() {
             let corner = corner + DVec2::new((chunk * most) as f64, 0.0);
-            let mends = self.mends(near, corner);
+            let mends = self.mends(company, corner, pixels.len());
             for (pixel, mend) in pixels.iter_mut().zip(mends) {
                 pixel.mend(mend);
             }
         }
     }
 
-    /// By how much members hold back more than their densities alone tell, for a row of pixels whose first one begins at
+    /// By how much members hold back more than their densities alone tell, for a row of `count` pixels whose first one begins at
     /// `corner`.
-    fn mends(&mut self, members: &[&Member], corner: DVec2) -> [f32; BLOCK] {
-        let radii = members.iter().filter_map(|member| match &member.kind {
-            Kind::Level(occluder) => Some(occluder.radius),
-            Kind::Tilted(_) => None,
-        });
-        let radius = radii.fold(f64::MAX, f64::min);
-        let side = averaged_side(radius);
+    fn mends(&mut self, company: &Company<'_>, corner: DVec2, count: usize) -> [f32; BLOCK] {
+        let side = company
+            .partial()
+            .map(Member::averaged_side)
+            .fold(0.0, f64::max);
         let mut mends = [0.0; BLOCK];
         let middle = corner + 0.5;
         if side == 0.0 {
-            self.place(members, middle);
-            self.add(members, 0.0, 1.0, &mut mends);
+            place(&mut self.chords, company, middle);
+            self.add(company, 0.0, 1.0, &mut mends[..count]);
             return mends;
         }
+        // Next to what each hides what both do is a small thing: few points tell it.
+        let radius = if side < 1.0 { 2.0 } else { 1.0 };
         let mut placed = f64::NAN;
         for (point, weight) in quadrature::square(radius) {
             if point.y != placed {
                 placed = point.y;
-                self.place(members, middle + DVec2::new(0.0, point.y * side));
+                place(
+                    &mut self.chords,
+                    company,
+                    middle + DVec2::new(0.0, point.y * side),
+                );
             }
-            self.add(members, point.x * side, weight as f32, &mut mends);
+            self.add(company, point.x * side, weight as f32, &mut mends[..count]);
         }
         mends
     }
 
-    /// Finds the chords of the points from `at` on.
-    fn place(&mut self, members: &[&Member], at: DVec2) {
-        let seen: Vec<(Cow<'_, Occluder>, DVec2)> = members
-            .iter()
-            .map(|member| match &member.kind {
-                Kind::Level(occluder) => (Cow::Borrowed(occluder), at),
-                Kind::Tilted(loops) => (Cow::Owned(Occluder::seen_from(at, loops)), DVec2::ZERO),
-            })
-            .collect();
-        self.chords
-            .place(seen.iter().map(|(occluder, at)| (occluder.as_ref(), *at)));
-    }
-
     /// Adds what is to be mended at the points that are whole pixels and `offset` behind the first.
-    fn add(&mut self, members: &[&Member], offset: f64, weight: f32, mends: &mut [f32; BLOCK]) {
-        self.densities.resize(members.len(), [0.0; BLOCK]);
+    fn add(&mut self, company: &Company<'_>, offset: f64, weight: f32, mends: &mut [f32]) {
+        let members = &company.members;
+        self.densities.resize(company.partial.len(), [0.0; BLOCK]);
         for (index, densities) in self.densities.iter_mut().enumerate() {
-            self.chords.density(index, offset, densities);
+            self.chords.density(self.level, index, offset, densities);
         }
         self.shared.clear();
+        let full = company.full();
         for (lane, mend) in mends.iter_mut().enumerate() {
-            self.partial.clear();
-            let partial = |index: &usize| {
-                let density = self.densities[*index][lane];
-                density > NOTHING && density < 1.0 - NOTHING
+            let is_partial = |density: f32| density > NOTHING && density < 1.0 - NOTHING;
+            let partial = self
+                .densities
+                .iter()
+                .enumerate()
+                .filter(|(_, of)| is_partial(of[lane]));
+            let mut partial = partial.map(|(index, _)| index);
+            let (Some(a), Some(b)) = (partial.next(), partial.next()) else {
+                continue;
             };
-            self.partial.extend((0..members.len()).filter(partial));
+            let is_pair = partial.next().is_none();
             self.hidden.clear();
-            self.hidden.extend(self.densities.iter().map(|of| of[lane]));
-            match *self.partial {
-                [] | [_] => {}
-                [a, b] => {
-                    let covariance =
-                        self.shared([a, b], offset)[lane] - self.hidden[a] * self.hidden[b];
-                    let mut corner = |of_a: f32, of_b: f32| {
-                        (self.hidden[a], self.hidden[b]) = (of_a, of_b);
-                        held(members, &self.hidden)
-                    };
-                    let cross =
-                        corner(1.0, 1.0) - corner(1.0, 0.0) - corner(0.0, 1.0) + corner(0.0, 0.0);
-                    *mend += weight * cross * covariance;
-                }
-                _ => {
-                    let x = lane as f64 + offset;
-                    let together = self.chords.held(x, |hidden| held(members, hidden));
-                    *mend += weight * (together - held(members, &self.hidden));
-                }
+            self.hidden.extend(&full);
+            for (&index, of) in company.partial.iter().zip(&self.densities) {
+                self.hidden[index] = of[lane];
+            }
+            if is_pair {
+                let apart = self.densities[a][lane] * self.densities[b][lane];
+                let together = self.shared([a, b], offset)[lane];
+                let pair = [company.partial[a], company.partial[b]];
+                *mend += weight * (together - apart) * cross(members, pair, &mut self.hidden);
+            } else {
+                let apart = held(members, &self.hidden);
+                let hidden = &mut self.hidden;
+                let together = self.chords.held(lane as f64 + offset, |inside| {
+                    for (&index, &inside) in company.partial.iter().zip(inside) {
+                        hidden[index] = inside;
+                    }
+                    held(members, hidden)
+                });
+                *mend += weight * (together - apart);
             }
         }
     }
@@ -486,5 +538,14 @@ impl Meet {
     }
 }
 
-/// A density that is as good as 0, and as far from 1 as good as 1.
-const NOTHING: f32 = 1e-4;
+/// Finds the chords of the points from `at` on for the members that hide a part of the disc.
+fn place(chords: &mut Chords, company: &Company<'_>, at: DVec2) {
+    let seen: Vec<(Cow<'_, Occluder>, DVec2)> = company
+        .partial()
+        .map(|member| match &member.kind {
+            Kind::Level(occluder) => (Cow::Borrowed(occluder), at),
+            Kind::Tilted(loops) => (Cow::Owned(Occluder::seen_from(at, loops)), DVec2::ZERO),
+        })
+        .collect();
+    chords.place(seen.iter().map(|(occluder, at)| (occluder.as_ref(), *at)));
+}

@@ -57,53 +57,35 @@ impl Occluder {
         }
     }
 
-    /// Whether the square from `corner` to one pixel on is within `reach` of the box of a loop, and for how many pixels to the
-    /// right that stays so.
-    pub(super) fn is_near(&self, corner: DVec2, reach: f64) -> (bool, f64) {
-        let mut all = (false, f64::MAX);
+    /// Puts the lines that discs about points at height `y` may meet into `out`, in pixels from the scene's origin.
+    pub(super) fn lines_near(&self, y: f64, out: &mut Vec<[DVec2; 2]>) {
         for of_loop in &self.loops {
-            let corner = corner - of_loop.base;
-            if corner.y + 1.0 <= of_loop.min.y - reach || corner.y >= of_loop.max.y + reach {
-                continue;
-            }
-            let (first, last) = (
-                of_loop.min.x - reach - 1.0 - corner.x,
-                of_loop.max.x + reach - corner.x,
-            );
-            let is_near = first < 0.0 && last > 0.0;
-            if is_near != all.0 && is_near {
-                all = (true, last.ceil());
-            } else if is_near {
-                all.1 = all.1.max(last.ceil());
-            } else if !all.0 && first >= 0.0 {
-                all.1 = all.1.min(first.floor() + 1.0);
+            let y = y - of_loop.base.y;
+            let (low, high) = (y - self.radius, y + self.radius);
+            if of_loop.min.y <= high && of_loop.max.y >= low {
+                let meets = |line: &&[DVec2; 2]| {
+                    line[0].y.min(line[1].y) <= high && line[0].y.max(line[1].y) >= low
+                };
+                let near = of_loop.lines.iter().filter(meets);
+                out.extend(near.map(|line| line.map(|point| point + of_loop.base)));
             }
         }
-        all
     }
 
-    /// The direction of the outline where the discs about a row of points meet it in a single line from one side to the other, or
-    /// none. The points are `count` whole pixels from `at` on.
-    pub(super) fn single_line(&self, at: DVec2, count: usize) -> Option<DVec2> {
+    /// The direction of the outline where the disc about a point meets it in a single line from one side to the other, or none.
+    pub(super) fn single_line(&self, lines: &[[DVec2; 2]], at: DVec2) -> Option<DVec2> {
+        let (min, max) = (at - self.radius, at + self.radius);
         let mut single = None;
-        for of_loop in &self.loops {
-            let at = at - of_loop.base;
-            let min = at - self.radius;
-            let max = at + self.radius + DVec2::new(count as f64 - 1.0, 0.0);
-            if of_loop.min.cmpgt(max).any() || of_loop.max.cmplt(min).any() {
+        for &[from, to] in lines {
+            let (low, high) = (from.min(to), from.max(to));
+            if low.cmpgt(max).any() || high.cmplt(min).any() {
                 continue;
             }
-            for &[from, to] in &of_loop.lines {
-                let (low, high) = (from.min(to), from.max(to));
-                if low.cmpgt(max).any() || high.cmplt(min).any() {
-                    continue;
-                }
-                let spans = |axis: usize| low[axis] <= min[axis] && high[axis] >= max[axis];
-                if single.is_some() || !(spans(0) || spans(1)) {
-                    return None;
-                }
-                single = Some(to - from);
+            let spans = |axis: usize| low[axis] <= min[axis] && high[axis] >= max[axis];
+            if single.is_some() || !(spans(0) || spans(1)) {
+                return None;
             }
+            single = Some(to - from);
         }
         single
     }
@@ -287,7 +269,12 @@ impl Chords {
     }
 
     /// The density of one caster at the points that are whole pixels and `offset` behind the first.
-    pub(super) fn density(&self, caster: usize, offset: f64, out: &mut [f32; BLOCK]) {
+    pub(super) fn density(&self, level: Level, caster: usize, offset: f64, out: &mut [f32; BLOCK]) {
+        dispatch!(level, simd => simd.vectorize(#[inline(always)] || self.add_density(caster, offset, out)));
+    }
+
+    #[inline(always)]
+    fn add_density(&self, caster: usize, offset: f64, out: &mut [f32; BLOCK]) {
         let hidden = &self.hidden[caster];
         let mut sums = [0.0; BLOCK];
         for (index, node) in self.nodes.iter().enumerate() {
@@ -335,7 +322,7 @@ impl Chords {
 
     /// What all casters hold back of the light at one of the points, where `held` says what they do together of a ray that
     /// some of them hide (1) and others do not (0).
-    pub(super) fn held(&mut self, x: f64, held: impl Fn(&[f32]) -> f32) -> f32 {
+    pub(super) fn held(&mut self, x: f64, mut held: impl FnMut(&[f32]) -> f32) -> f32 {
         let mut sum = 0.0;
         for (index, node) in self.nodes.iter().enumerate() {
             self.ends.clear();
@@ -360,6 +347,7 @@ impl Chords {
                 }
                 self.inside[caster] = if begins { 1.0 } else { 0.0 };
             }
+            sum += node.weight * (node.half - done) * held(&self.inside);
         }
         sum
     }
