@@ -32,7 +32,7 @@ pub use sink::{MeshBuffers, MeshIndex, MeshSink, MeshSlices};
 use strips::Strips;
 use tangents::{ProjectionCircle, tangent_loops};
 
-use crate::density::{Field, flatness};
+use crate::density::{EXACT_SHARE, Field, flatness};
 use crate::error::Result;
 use crate::outline::Outline;
 use crate::scratch::Scratch;
@@ -293,8 +293,21 @@ impl Shadow {
             }
             let loops = |knot: &Knot| (*knot, tangent_loops(&circles, knot.t, flat));
             let rings = pieces.knots.iter().map(loops).collect();
-            let field = Field::new(&self.exact_outline().moved(-center), radius);
-            return Refinement::new(field, options, rings).run(center, step);
+            // What errors are measured against may itself be a little off, as long as that is stated.
+            let share = FIELD_SHARE * levels;
+            let field = if share > EXACT_SHARE {
+                Field::new(
+                    &self.outline(flatness(share, radius, 0.0)).moved(-center),
+                    radius,
+                )
+            } else {
+                Field::new(&self.exact_outline().moved(-center), radius)
+            };
+            let mut mesh = Refinement::new(field, options, rings).run(center, step);
+            if !self.is_fixed() {
+                mesh.error_levels += share;
+            }
+            return mesh;
         }
     }
 }
@@ -336,6 +349,9 @@ const UMBRA_FACET: f64 = 1e-7;
 
 /// The part of the tolerance that flattening curves may use up.
 const FLATTENING_SHARE: f64 = 0.1;
+
+/// The part that it may use up where errors are measured.
+const FIELD_SHARE: f64 = 0.05;
 
 /// The part of the tolerance that straight pieces of the profile may use. Were it all, as with five pieces for one level,
 /// corners would need three times the triangles for the thousandths that are left.
