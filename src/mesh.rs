@@ -368,7 +368,7 @@ const COARSEST_RING: f64 = 0.02;
 const NARROWEST: f64 = 64.0;
 
 /// The part of the tolerance that strips leave to the rounding of their vertices.
-const ROUNDING_SHARE: f64 = 1.0 / 64.0;
+const ROUNDING_SHARE: f64 = 1.0 / 256.0;
 
 /// How far the chords of a hard shadow's arcs may be from them, over its extent.
 const FACET: f64 = 1e-5;

@@ -71,14 +71,14 @@ const SAMPLED: f64 = 0.95;
 
 /// Into how many parts samples cut a triangle's sides: while a template is looked for, and to be sure of it.
 const COARSE: u32 = 4;
-const FINE: u32 = 7;
+const FINE: u32 = 12;
 
 /// Templates of fewer triangles take more samples each, up to so many times the parts.
 const FEW: f64 = 400.0;
 const MOST: u32 = 3;
 
 /// The share of the tolerance that is aimed at first: rules that leave out how bends along and across meet.
-const FIRST_AIM: f64 = 1.05;
+const FIRST_AIM: f64 = 1.1;
 
 /// By how much the aim shrinks from try to try, and how many there are.
 const COARSEST_STEP: f64 = 0.95;
