@@ -12,6 +12,7 @@ mod gouraud;
 mod profile;
 mod refine;
 mod regions;
+mod samples;
 mod settle;
 mod sink;
 pub(crate) mod strips;
@@ -303,11 +304,12 @@ impl Shadow {
             } else {
                 Field::new(&self.exact_outline().moved(-center), radius)
             };
-            let mut mesh = Refinement::new(field, options, rings).run(center, step);
-            if !self.is_fixed() {
-                mesh.error_levels += share;
-            }
-            return mesh;
+            let unsure = if self.is_fixed() {
+                0.0
+            } else {
+                share.max(EXACT_SHARE)
+            };
+            return Refinement::new(field, options, rings).run(center, step, unsure / 255.0);
         }
     }
 }

@@ -1,5 +1,7 @@
 //! Templates: strips for one set of corners, measured and made finer until they keep their tolerance.
 
+use std::collections::HashSet;
+
 use glam::DVec2;
 use libm::{ceil, sqrt};
 
@@ -7,6 +9,7 @@ use super::corner::Corner;
 use super::fan::{Bends, Fan, Rings};
 use super::ray::MIDDLE;
 use super::{APART, SIGNS};
+use crate::mesh::samples::{climb, lattice, mix, mix_densities};
 
 /// Strips in penumbra radii, for rectangles of any size that have these corners.
 #[derive(Debug, Default)]
@@ -58,6 +61,8 @@ pub(super) struct Builder {
     places: Vec<Place>,
     /// For each fan's points, the least and the largest error found beside them.
     errors: [Vec<[f64; 2]>; 4],
+    /// The triangles of one corner that speak for those of equal corners, by their fan and points.
+    measured: HashSet<[usize; 4]>,
 }
 
 impl Template {
@@ -67,11 +72,20 @@ impl Template {
 }
 
 /// Error is sampled: between samples it may be larger by the rest.
-const SAMPLED: f64 = 0.95;
+const SAMPLED: f64 = 0.97;
 
 /// Into how many parts samples cut a triangle's sides: while a template is looked for, and to be sure of it.
 const COARSE: u32 = 4;
-const FINE: u32 = 12;
+const FINE: u32 = 8;
+
+/// How far samples are apart at most, in penumbra radii: long triangles run past corners that are shorter than a part.
+const SPACING: f64 = 0.2;
+
+/// By how much rectangles are also longer than the smallest one, in penumbra radii: triangles along their sides slant less.
+const STRETCH: f64 = 4.0;
+
+/// From which part of the limit on the way from a sample to the top beside it is gone.
+const NEAR: f64 = 0.75;
 
 /// Templates of fewer triangles take more samples each, up to so many times the parts.
 const FEW: f64 = 400.0;
@@ -110,15 +124,16 @@ impl Builder {
                 anchored: fan_of != [0; 4],
                 ..rings(&bends, aim)
             };
-            for i in (0..4).filter(|&i| fan_of[i] == i) {
-                self.fans[i].place(&corners[i], &rings, corners[0].has_umbra());
-            }
+            let umbra = corners[0].has_umbra();
+            let placed = (0..4)
+                .filter(|&i| fan_of[i] == i)
+                .all(|i| self.fans[i].place(&corners[i], &rings, umbra));
             let mut error = f64::INFINITY;
-            if self.join_rings(corners, &fan_of, &rings, template) {
+            if placed && self.join_rings(corners, &fan_of, &rings, template) {
                 for _ in 0..=BALANCES {
-                    error = self.measure(corners, &fan_of, template, COARSE);
+                    error = self.measure(corners, &fan_of, template, COARSE, f64::INFINITY);
                     if error <= limit {
-                        error = self.measure(corners, &fan_of, template, FINE);
+                        error = self.measure(corners, &fan_of, template, FINE, NEAR * limit);
                     }
                     if error <= limit {
                         template.error_levels = error / SAMPLED * 255.0;
@@ -199,14 +214,22 @@ impl Builder {
     }
 
     /// The largest error of the template's triangles, in density, by samples; each vertex keeps the extremes beside it.
+    /// Where a sample's error is above `near` the top beside it counts.
     fn measure(
         &mut self,
         corners: &[Corner; 4],
         fan_of: &[usize; 4],
         template: &Template,
         parts: u32,
+        near: f64,
     ) -> f64 {
         let half = smallest(corners);
+        let whole = |stretch: f64| Corner {
+            tip: half + stretch,
+            far: -half - stretch,
+            radii: corners.map(|corner| corner.radii[0]),
+        };
+        let stretches = corners[0].far.x.is_infinite();
         // A few large triangles take more samples each.
         let more = sqrt(FEW / template.triangles.len() as f64) as u32;
         let parts = parts * more.clamp(1, MOST);
@@ -214,47 +237,52 @@ impl Builder {
             errors.clear();
             errors.resize(fan.points.len(), [0.0; 2]);
         }
+        self.measured.clear();
         let mut worst: f64 = 0.0;
         for triangle in &template.triangles {
             let places = triangle.map(|i| self.places[i as usize]);
             let at = places.map(|place| place.at);
-            let middle = at[0] + at[1] + at[2];
-            let quarter = match (middle.x >= 0.0, middle.y >= 0.0) {
-                (true, true) => 0,
-                (false, true) => 1,
-                (false, false) => 2,
-                (true, false) => 3,
-            };
             let densities = triangle.map(|i| f64::from(template.vertices[i as usize].density));
-            // One of equal corners speaks for all, but not for what lies between them.
-            let spans = triangle
-                .iter()
-                .any(|&i| template.vertices[i as usize].quarter != quarter);
-            let spoken_for = fan_of[quarter] != quarter && !spans;
+            // One of equal corners speaks for all, but not for what lies between them, nor where rounding cuts the same
+            // four vertices the other way.
+            let quarters = triangle.map(|i| template.vertices[i as usize].quarter);
+            let spans = quarters != [quarters[0]; 3];
+            let mut key = [fan_of[quarters[0]]; 4];
+            for (part, place) in key[1..].iter_mut().zip(&places) {
+                *part = place.point;
+            }
+            key[1..].sort_unstable();
+            let spoken_for = !spans && !self.measured.insert(key);
             let umbra = densities == [1.0; 3] && places.iter().all(|place| place.fixed);
             if spoken_for || umbra {
                 continue;
             }
-            let corner = &corners[quarter];
-            let pole = half - corner.tip;
-            for i in 0..=parts {
-                for j in 0..=parts - i {
-                    let [a, b] = [i, j].map(|part| f64::from(part) / f64::from(parts));
-                    let weights = [a, b, 1.0 - a - b];
-                    let (mut point, mut error) = (DVec2::ZERO, 0.0);
-                    for corner in 0..3 {
-                        point += at[corner] * weights[corner];
-                        error += densities[corner] * weights[corner];
+            for stretch in [0.0, STRETCH] {
+                if stretch > 0.0 && !(spans && stretches) {
+                    continue;
+                }
+                let whole = whole(stretch);
+                let at = [0, 1, 2].map(|i: usize| at[i] + SIGNS[quarters[i]] * stretch);
+                let error_at =
+                    |weights| mix_densities(densities, weights) - whole.density(mix(at, weights));
+                let mut most = (0.0, [0.0; 3]);
+                lattice(at, parts, SPACING, |weights| {
+                    let error = error_at(weights);
+                    if error.abs() > most.0 {
+                        most = (error.abs(), weights);
                     }
-                    error -= corner.density(SIGNS[quarter] * point - pole);
-                    worst = worst.max(error.abs());
                     for (place, weight) in places.into_iter().zip(weights) {
                         if weight >= BESIDE {
                             let [least, most] = &mut self.errors[place.fan][place.point];
                             (*least, *most) = (least.min(error), most.max(error));
                         }
                     }
+                });
+                if most.0 > near {
+                    let step = 0.5 / f64::from(parts);
+                    most = climb(most, step, |weights| error_at(weights).abs());
                 }
+                worst = worst.max(most.0);
             }
         }
         worst

@@ -134,12 +134,15 @@ impl Fan {
         self.rays.iter().map(widths).fold([f64::INFINITY; 2], least)
     }
 
-    /// Places the vertices of every ring.
-    pub(super) fn place(&mut self, corner: &Corner, rings: &Rings, umbra: bool) {
+    /// Places the vertices of every ring; no where the outermost or the innermost strip has no width.
+    pub(super) fn place(&mut self, corner: &Corner, rings: &Rings, umbra: bool) -> bool {
         self.points.clear();
         self.ends.clear();
         let count = rings.count();
         let [outer, inner] = self.end_widths(rings);
+        if outer < NARROWEST || (umbra && inner < NARROWEST) {
+            return false;
+        }
         let round = corner.radii[0];
         let center = corner.tip - round;
         self.arc(center, round + 1.0, BEYOND * outer, 0.0);
@@ -161,6 +164,7 @@ impl Fan {
             self.points.push(pole);
             self.ends.push(self.points.len());
         }
+        true
     }
 
     /// Which of the points are a ring's, from the x axis on.
@@ -314,6 +318,9 @@ const SHARP_GEOMETRY: f64 = 0.9;
 
 /// Corners are sharp up to this radius, in penumbra radii.
 const SHARP: f64 = 0.05;
+
+/// The narrowest strip beside them, in penumbra radii: one without width would take chords without end.
+const NARROWEST: f64 = 1e-3;
 
 /// How far the corners of the two outermost loops may be from their arcs, over the width of the strip beside them.
 const BEYOND: f64 = 0.08;
