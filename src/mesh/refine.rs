@@ -13,7 +13,7 @@ use spade::{Point2, Triangulation, mitigate_underflow};
 
 use super::profile::Profile;
 use super::regions::{Face, Region, Triangles, Vertex, faces};
-use super::samples::{Weights, climb, lattice, mix, mix_densities};
+use super::samples::{Weights, mix, mix_densities, worst};
 use super::settle::settle;
 use super::umbra::{self, LoopVertex};
 use super::{MeshOptions, MeshVertex, Ring, ShadowMesh};
@@ -31,7 +31,7 @@ const SAMPLED: f64 = 0.97;
 
 /// Into how many parts a triangle's sides are cut to find what is wrong, and to be sure of it.
 const COARSE: u32 = 4;
-const FINE: u32 = 6;
+const FINE: u32 = 8;
 
 /// How far samples are apart at most, in penumbra radii: long triangles run past corners that are shorter than a part.
 const SPACING: f64 = 0.2;
@@ -40,8 +40,8 @@ const SPACING: f64 = 0.2;
 /// tolerance then is reported.
 const LEAST_SHARE: f64 = 0.25;
 
-/// From which part of the limit on the way from a sample to the top beside it is gone.
-const NEAR: f64 = 0.75;
+/// From which part of the limit on the way from samples to the tops beside them is gone.
+const NEAR: f64 = 0.7;
 
 /// What sampling found out about a triangle.
 #[derive(Debug, Clone, Copy)]
@@ -210,29 +210,23 @@ impl Refinement {
             sure: surely,
         };
         // Where a vertex would mend nothing there is no error to be mended.
-        let mut look = |weights: Weights| {
+        let look = |weights: Weights| {
             let exact = field.at(mix(at, weights));
             let density = mix_densities(densities, weights);
             result.exact_error = result.exact_error.max((density - exact).abs());
             let mendable = (0..3).all(|i| !fixed[i] || weights[i] > 0.0);
             if mendable {
-                (density - profile.in_place_of(exact)).abs()
+                density - profile.in_place_of(exact)
             } else {
                 0.0
             }
         };
-        let mut top = (0.0, [1.0, 0.0, 0.0]);
-        let sample = |weights| {
-            let error = look(weights);
-            if error > top.0 {
-                top = (error, weights);
-            }
+        let (parts, near) = if surely {
+            (FINE, NEAR * limit)
+        } else {
+            (COARSE, f64::INFINITY)
         };
-        let parts = if surely { FINE } else { COARSE };
-        lattice(at, parts, SPACING * radius, sample);
-        if surely && top.0 > NEAR * limit {
-            top = climb(top, 0.5 / f64::from(parts), look);
-        }
+        let top = worst(at, parts, SPACING * radius, near, look, |_, _| ());
         (result.error, result.worst) = (top.0, mix(at, top.1));
         self.assessed.insert(key, result);
         (key, result)

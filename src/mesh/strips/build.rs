@@ -9,7 +9,7 @@ use super::corner::Corner;
 use super::fan::{Bends, Fan, Rings};
 use super::ray::MIDDLE;
 use super::{APART, SIGNS};
-use crate::mesh::samples::{climb, lattice, mix, mix_densities};
+use crate::mesh::samples::{Weights, mix, mix_densities, worst};
 
 /// Strips in penumbra radii, for rectangles of any size that have these corners.
 #[derive(Debug, Default)]
@@ -84,8 +84,8 @@ const SPACING: f64 = 0.2;
 /// By how much rectangles are also longer than the smallest one, in penumbra radii: triangles along their sides slant less.
 const STRETCH: f64 = 4.0;
 
-/// From which part of the limit on the way from a sample to the top beside it is gone.
-const NEAR: f64 = 0.75;
+/// From which part of the limit on the way from samples to the tops beside them is gone.
+const NEAR: f64 = 0.7;
 
 /// Templates of fewer triangles take more samples each, up to so many times the parts.
 const FEW: f64 = 400.0;
@@ -238,7 +238,7 @@ impl Builder {
             errors.resize(fan.points.len(), [0.0; 2]);
         }
         self.measured.clear();
-        let mut worst: f64 = 0.0;
+        let mut most: f64 = 0.0;
         for triangle in &template.triangles {
             let places = triangle.map(|i| self.places[i as usize]);
             let at = places.map(|place| place.at);
@@ -265,27 +265,19 @@ impl Builder {
                 let at = [0, 1, 2].map(|i: usize| at[i] + SIGNS[quarters[i]] * stretch);
                 let error_at =
                     |weights| mix_densities(densities, weights) - whole.density(mix(at, weights));
-                let mut most = (0.0, [0.0; 3]);
-                lattice(at, parts, SPACING, |weights| {
-                    let error = error_at(weights);
-                    if error.abs() > most.0 {
-                        most = (error.abs(), weights);
-                    }
+                let beside = |weights: Weights, error: f64| {
                     for (place, weight) in places.into_iter().zip(weights) {
                         if weight >= BESIDE {
                             let [least, most] = &mut self.errors[place.fan][place.point];
                             (*least, *most) = (least.min(error), most.max(error));
                         }
                     }
-                });
-                if most.0 > near {
-                    let step = 0.5 / f64::from(parts);
-                    most = climb(most, step, |weights| error_at(weights).abs());
-                }
-                worst = worst.max(most.0);
+                };
+                let (error, _) = worst(at, parts, SPACING, near, error_at, beside);
+                most = most.max(error);
             }
         }
-        worst
+        most
     }
 
     /// Moves densities to where the errors beside each vertex are as large above as below.
