@@ -9,7 +9,7 @@ use std::collections::HashMap;
 
 use glam::DVec2;
 use spade::handles::{FixedUndirectedEdgeHandle, FixedVertexHandle};
-use spade::{Point2, Triangulation, mitigate_underflow};
+use spade::{FloatTriangulation, Point2, Triangulation, mitigate_underflow};
 
 use super::profile::Profile;
 use super::regions::{Face, Region, Triangles, Vertex, faces};
@@ -22,8 +22,12 @@ use crate::density::Field;
 /// Rounds of refinement at most. Each halves the larger triangles: the finest tolerance takes about 12.
 const ROUNDS: usize = 40;
 
-/// Vertices are not added nearer to another than this, over the penumbra radius: nothing would be gained.
-const NEAREST: f64 = 1e-3;
+/// Vertices nearer to a ring than this, over the penumbra radius, are put on it.
+const BESIDE: f64 = 1e-3;
+
+/// Vertices are not added nearer to another than this, over the penumbra radius: nothing would be gained. Slivers along a
+/// ring are wrong nearer to their vertices than they should be.
+const NEAREST: f64 = 5e-5;
 
 /// The part of the tolerance that an error found by sampling may reach: the tops between samples are sought, but could be
 /// missed.
@@ -107,7 +111,6 @@ impl Refinement {
         let noise = unsure + rounding * FRAC_2_PI / self.field.radius();
         let tolerance = self.options.tolerance.as_levels() / 255.0;
         let limit = SAMPLED * (tolerance - noise).max(LEAST_SHARE * tolerance);
-        let nearest = NEAREST * self.field.radius();
         for _ in 0..ROUNDS {
             let faces = self.faces(Region::Penumbra);
             let mut wrong = self.wrong(&faces, limit, false);
@@ -120,7 +123,7 @@ impl Refinement {
                 if self.triangles.num_vertices() >= self.options.max_vertices {
                     break;
                 }
-                self.mend(key, limit, nearest);
+                self.mend(key, limit);
             }
             if self.triangles.num_vertices() == before {
                 break;
@@ -233,7 +236,8 @@ impl Refinement {
     }
 
     /// Adds a vertex at a triangle's worst point, unless vertices added since have mended it.
-    fn mend(&mut self, key: [usize; 3], limit: f64, nearest: f64) {
+    fn mend(&mut self, key: [usize; 3], limit: f64) {
+        let [beside, nearest] = [BESIDE, NEAREST].map(|share| share * self.field.radius());
         let Some(&assessment) = self.assessed.get(&key) else {
             return;
         };
@@ -254,7 +258,7 @@ impl Refinement {
             DVec2::new(position.x, position.y)
         };
         let is_near = |handle| (place(handle) - assessment.worst).length() < nearest;
-        match self.constraint_near(assessment.worst, nearest) {
+        match self.constraint_near(assessment.worst, beside) {
             Some((from, to, edge)) => {
                 // A vertex beside a constraint by a rounding error would leave a triangle of no area: the constraint is
                 // taken away first and led by way of the vertex after.
@@ -288,31 +292,17 @@ impl Refinement {
         FixedVertexHandle,
         FixedUndirectedEdgeHandle,
     )> {
-        use spade::PositionInTriangulation::{OnEdge, OnFace};
-        let faces = match self.triangles.locate(Point2::new(point.x, point.y)) {
-            OnFace(face) => vec![self.triangles.face(face)],
-            OnEdge(edge) => {
-                let edge = self.triangles.directed_edge(edge);
-                [edge.face(), edge.rev().face()]
-                    .into_iter()
-                    .filter_map(|face| face.as_inner())
-                    .collect()
-            }
-            _ => return None,
-        };
-        let constraints = faces
-            .iter()
-            .flat_map(|face| face.adjacent_edges())
-            .filter(|edge| edge.is_constraint_edge());
-        let near = constraints
-            .map(|edge| (edge.distance_2(Point2::new(point.x, point.y)), edge))
-            .filter(|(squared, _)| *squared < distance * distance);
+        // Slivers may lie between: the faces at the point alone do not tell.
+        let center = Point2::new(point.x, point.y);
+        let edges = self
+            .triangles
+            .get_edges_in_circle(center, distance * distance);
+        let near = edges
+            .filter(|edge| edge.is_constraint_edge())
+            .map(|edge| (edge.distance_2(center), edge));
         let (_, edge) = near.min_by(|a, b| a.0.total_cmp(&b.0))?;
-        Some((
-            edge.from().fix(),
-            edge.to().fix(),
-            edge.as_undirected().fix(),
-        ))
+        let [from, to] = edge.vertices().map(|vertex| vertex.fix());
+        Some((from, to, edge.fix()))
     }
 
     /// The difference at a point in the triangulation as it is now.

@@ -17,6 +17,9 @@ pub(crate) const SAMPLES: [[f64; 3]; 9] = [
     [0.3, 0.6, 0.1],
 ];
 
+/// The tolerances that meshes are tested at, in levels.
+pub(crate) const TOLERANCES: [f32; 5] = [0.5, 1.0, 2.0, 4.0, 8.0];
+
 pub(crate) fn levels(levels: f32) -> Tolerance {
     Tolerance::levels(levels).unwrap()
 }
@@ -117,7 +120,7 @@ pub(crate) fn dense_error(shadow: &Shadow, mesh: &ShadowMesh, parts: u32) -> f64
         let [a, b, c] = corners.map(|corner| corner.position.map(f64::from));
         let length = |from: [f64; 2], to: [f64; 2]| (to[0] - from[0]).hypot(to[1] - from[1]);
         let longest = length(a, b).max(length(b, c)).max(length(c, a));
-        let long = (longest / (0.1 * shadow.radius())).ceil().min(200.0) as u32;
+        let long = (longest / (0.2 * shadow.radius())).ceil().min(32.0) as u32;
         // The whole of an umbra is flat.
         let parts = match corners.iter().all(|corner| corner.density == 1.0) {
             true => parts,
@@ -154,7 +157,7 @@ pub(crate) fn dense_error(shadow: &Shadow, mesh: &ShadowMesh, parts: u32) -> f64
         }
         error
     };
-    tops.into_iter().take(24).map(climb).fold(0.0, f64::max)
+    tops.into_iter().take(16).map(climb).fold(0.0, f64::max)
 }
 
 /// The error in levels where a triangle's first two corners have these weights.

@@ -10,8 +10,6 @@ use crate::checks::*;
 /// The penumbra radius of all of them.
 const RADIUS: f32 = 10.0;
 
-const TOLERANCES: [f32; 5] = [0.5, 1.0, 2.0, 4.0, 8.0];
-
 #[test]
 fn random_outlines_keep_their_tolerance() {
     random_outlines(16);
