@@ -120,15 +120,15 @@ impl ShadowMesh {
             .map(|corners| [0, 1, 2].map(|i: usize| self.vertices[corners[i] as usize]))
     }
 
-    /// The largest difference from the exact density found by sampling each triangle, and what rounding its
-    /// vertices to `f32` may add, in levels. For profiles other than
-    /// the disc's it holds their own difference too.
+    /// The largest difference from the exact density, in levels: the largest found by samples in each triangle and on the way
+    /// up from them, a few hundredths more for what they may have missed, and what rounding vertices to `f32` and
+    /// flattening curves may add. For profiles other than the disc's it holds their own difference too.
     #[must_use]
     pub fn error_levels(&self) -> f64 {
         self.error_levels
     }
 
-    /// Whether the tolerance was reached before the limit on vertices.
+    /// Whether the tolerance was reached: before the limit on vertices, and in spite of rounding.
     #[must_use]
     pub fn is_complete(&self) -> bool {
         self.complete
