@@ -97,7 +97,7 @@ const FIRST_AIM: f64 = 1.1;
 /// By how much the aim shrinks from try to try, and how many there are.
 const COARSEST_STEP: f64 = 0.95;
 const FINEST_STEP: f64 = 0.8;
-const TRIES: usize = 8;
+const TRIES: usize = 14;
 
 /// How often vertices' densities are balanced before strips are made finer.
 const BALANCES: usize = 4;
