@@ -10,7 +10,7 @@ use libm::ceil;
 pub(super) type Weights = [f64; 3];
 
 /// The most samples along a side: one that is longer yet is straight for most of its length.
-const MOST: f64 = 512.0;
+const MOST: f64 = 128.0;
 
 /// How often the steps of the way up are halved. Tops are parabolas: a step short of one is wrong by its square.
 const HALVINGS: u32 = 3;
