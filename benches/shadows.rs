@@ -10,6 +10,7 @@
 //! | `radius` | concave paths and a card on their way from narrow to wide penumbrae | shape / r |
 //! | `cards` | 100 cards on 1920 x 1080: projecting them, blending all, blending what opaque cards leave to be seen | part |
 //! | `mesh`, `raster` | a shadow's triangles at a tolerance in levels; their densities on pixels | shape (/ levels) |
+//! | `mesh-into` | the same into buffers of the caller's, again (warm) and for a shadow not seen before (new) | shape / warm or new / levels |
 //! | `render` | whole pictures of scenes | scene |
 //!
 //! The penumbra radius r is in pixels, whatever the scale. Throughputs count the pixels of the shadow's bounds.
@@ -33,8 +34,8 @@ use criterion::{
 };
 use penumbral::plan::Method;
 use penumbral::{
-    Color, FillRule, Grid, Hidden, Light, Paint, Path, PixelOptions, Renderer, Scene, Scratch,
-    Shadow, Shape, Tolerance,
+    Color, FillRule, Grid, Hidden, Light, MeshBuffers, Paint, Path, PixelOptions, Renderer, Scene,
+    Scratch, Shadow, Shape, Tolerance,
 };
 use tiny_skia::Pixmap;
 
@@ -291,6 +292,33 @@ fn mesh(c: &mut Criterion) {
     group.finish();
 }
 
+fn mesh_into(c: &mut Criterion) {
+    let mut group = c.benchmark_group("mesh-into");
+    for (name, shape) in rounded_shapes() {
+        let shadow = shadow(&shape, 10.0);
+        let (mut buffers, mut scratch) = (MeshBuffers::<u16>::new(), Scratch::new());
+        for levels in [1.0, 4.0] {
+            let tolerance = Tolerance::levels(levels).unwrap();
+            for fresh in [false, true] {
+                let kind = if fresh { "new" } else { "warm" };
+                group.bench_function(BenchmarkId::new(format!("{name}/{kind}"), levels), |b| {
+                    b.iter(|| {
+                        if fresh {
+                            scratch = Scratch::new();
+                        }
+                        buffers.clear();
+                        let shadow = black_box(&shadow);
+                        shadow
+                            .mesh_into(&mut buffers, tolerance, &mut scratch)
+                            .unwrap()
+                    });
+                });
+            }
+        }
+    }
+    group.finish();
+}
+
 fn raster(c: &mut Criterion) {
     let mut group = c.benchmark_group("raster");
     for (name, shape) in shapes() {
@@ -335,6 +363,6 @@ fn brief() -> Criterion {
 criterion_group! {
     name = benches;
     config = brief();
-    targets = cast, methods, outputs, area, radius, cards, mesh, raster, render
+    targets = cast, methods, outputs, area, radius, cards, mesh, mesh_into, raster, render
 }
 criterion_main!(benches);

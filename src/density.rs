@@ -11,6 +11,7 @@ pub(crate) mod exact;
 mod field;
 mod frame;
 pub(crate) mod grid;
+pub(crate) mod lines;
 pub(crate) mod nine_patch;
 pub(crate) mod quadrature;
 pub(crate) mod rounded;

@@ -56,7 +56,7 @@
 //! | `image.rs` | [`Image`]: casters with alpha |
 //! | `pose.rs`, `tilted.rs` | [`Pose`], [`TiltedShadow`]: casters that are not parallel to the light |
 //! | `density.rs`, `density/` | densities: the closed form at points, and on pixels by a method a file; bytes |
-//! | `mesh.rs`, `mesh/` | [`ShadowMesh`]: tangents, triangulation, refinement, Gouraud rasterisation |
+//! | `mesh.rs`, `mesh/` | [`ShadowMesh`]: strips; tangents, triangulation, refinement; Gouraud rasterisation; [`MeshSink`]: where triangles go |
 //! | `plan.rs` | [`plan::choose`]: the cheapest method within a tolerance |
 //! | `scene.rs`, `scene/` | [`Scene`], [`Surface`], [`Group`], and their JSON format |
 //! | `tolerance.rs` | [`Tolerance`]: how wrong a shadow may be |
@@ -77,7 +77,7 @@
 //! | `svg-path` | [`Path::from_svg`] | svgtypes |
 //! | `scene` | [`Scene::from_json`] | `serde`, `serde_json`, `svg-path` |
 //! | `cli` | the command line `penumbral` | clap, image, indicatif, `raster`, `scene` |
-//! | `lyon`, `kurbo` | paths from these crates | kurbo |
+//! | `lyon`, `kurbo` | paths from these crates, meshes into lyon's buffers | kurbo |
 //! | `rayon` | [`Shadow::blend_rgba8_in_bands`](crate::Shadow): drawing on several threads | rayon |
 //!
 //! # Stability guarantees
@@ -124,7 +124,12 @@ pub use grid::Grid;
 pub use hidden::Hidden;
 pub use image::Image;
 pub use light::Light;
-pub use mesh::{MeshOptions, MeshVertex, Profile, ShadowMesh, meshes_to_svg};
+#[cfg(feature = "lyon")]
+pub use mesh::LyonBuffers;
+pub use mesh::{
+    MeshBuffers, MeshIndex, MeshOptions, MeshQuality, MeshSink, MeshSlices, MeshVertex, Profile,
+    ShadowMesh, meshes_to_svg,
+};
 pub use nine_patch::{NinePatch, PatchPlace, ShadowKey};
 pub use paint::Paint;
 pub use path::{FillRule, Path};

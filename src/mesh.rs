@@ -1,6 +1,7 @@
 //! Triangles over which linear interpolation of density stays within a tolerance.
 //!
-//! The tangent construction gives the skeleton: rings from the penumbra's outer edge to the umbra, at the distances that
+//! Rounded rectangles and circles are strips between rings, which need no triangulator. For all other outlines, and where
+//! no such strips were found, the tangent construction gives the skeleton: rings from the penumbra's outer edge to the umbra, at the distances that
 //! suit the profile best. Between them a constrained Delaunay triangulation (spade), inside the umbra a plain one (lyon);
 //! where the result is still wrong, as at corners and where there is no umbra, vertices are added until it is not.
 //!
@@ -11,9 +12,14 @@ mod gouraud;
 mod profile;
 mod refine;
 mod regions;
+mod samples;
 mod settle;
+mod sink;
+pub(crate) mod strips;
 mod tangents;
 mod umbra;
+
+use core::f64::consts::FRAC_2_PI;
 
 use glam::DVec2;
 
@@ -21,10 +27,16 @@ pub use export::meshes_to_svg;
 pub use profile::Profile;
 use profile::{Knot, Pieces};
 use refine::Refinement;
+#[cfg(feature = "lyon")]
+pub use sink::LyonBuffers;
+pub use sink::{MeshBuffers, MeshIndex, MeshSink, MeshSlices};
+use strips::Strips;
 use tangents::{ProjectionCircle, tangent_loops};
 
-use crate::density::{Field, flatness};
+use crate::density::{EXACT_SHARE, Field, flatness};
+use crate::error::Result;
 use crate::outline::Outline;
+use crate::scratch::Scratch;
 use crate::shadow::{Bounds, Shadow};
 use crate::tolerance::Tolerance;
 
@@ -108,15 +120,15 @@ impl ShadowMesh {
             .map(|corners| [0, 1, 2].map(|i: usize| self.vertices[corners[i] as usize]))
     }
 
-    /// The largest difference from the exact density found by sampling each triangle, and what rounding its
-    /// vertices to `f32` may add, in levels. For profiles other than
-    /// the disc's it holds their own difference too.
+    /// The largest difference from the exact density, in levels: the largest found by samples in each triangle and on the way
+    /// up from them, a few hundredths more for what they may have missed, and what rounding vertices to `f32` and
+    /// flattening curves may add. For profiles other than the disc's it holds their own difference too.
     #[must_use]
     pub fn error_levels(&self) -> f64 {
         self.error_levels
     }
 
-    /// Whether the tolerance was reached before the limit on vertices.
+    /// Whether the tolerance was reached: before the limit on vertices, and in spite of rounding.
     #[must_use]
     pub fn is_complete(&self) -> bool {
         self.complete
@@ -130,6 +142,16 @@ impl ShadowMesh {
             complete: true,
         }
     }
+}
+
+/// What became of a mesh.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct MeshQuality {
+    /// As [`ShadowMesh::error_levels`].
+    pub error_levels: f64,
+    /// As [`ShadowMesh::is_complete`].
+    pub complete: bool,
 }
 
 impl Shadow {
@@ -149,6 +171,87 @@ impl Shadow {
     #[must_use]
     pub fn mesh(&self, options: impl Into<MeshOptions>) -> ShadowMesh {
         let options = options.into();
+        let mut buffers = MeshBuffers::new();
+        match self.strips(&options, &mut Scratch::new(), &mut buffers) {
+            Ok(Some(quality)) => ShadowMesh {
+                vertices: buffers.vertices,
+                indices: buffers.indices,
+                error_levels: quality.error_levels,
+                complete: quality.complete,
+            },
+            _ => self.refined(&options),
+        }
+    }
+
+    /// Gives the triangles of [`Shadow::mesh`] to a sink.
+    ///
+    /// For rounded rectangles and circles nothing is allocated once `scratch` and the sink have grown.
+    ///
+    /// # Errors
+    /// What the sink refuses, before it is given anything.
+    pub fn mesh_into(
+        &self,
+        sink: &mut impl MeshSink,
+        options: impl Into<MeshOptions>,
+        scratch: &mut Scratch,
+    ) -> Result<MeshQuality> {
+        let options = options.into();
+        if let Some(quality) = self.strips(&options, scratch, sink)? {
+            return Ok(quality);
+        }
+        let mesh = self.refined(&options);
+        sink.begin(mesh.vertices.len(), mesh.indices.len() / 3)?;
+        for &vertex in &mesh.vertices {
+            sink.vertex(vertex);
+        }
+        for &corners in mesh.indices.as_chunks().0 {
+            sink.triangle(corners);
+        }
+        Ok(MeshQuality {
+            error_levels: mesh.error_levels,
+            complete: mesh.complete,
+        })
+    }
+
+    /// The mesh in strips, if the shadow is one of those that have them.
+    fn strips(
+        &self,
+        options: &MeshOptions,
+        scratch: &mut Scratch,
+        sink: &mut impl MeshSink,
+    ) -> Result<Option<MeshQuality>> {
+        let radius = self.radius();
+        let disc = options.profile == Profile::Disc && radius > 0.0;
+        let Some(rounded) = self.rounded().filter(|_| disc) else {
+            return Ok(None);
+        };
+        let step = rounded.min.abs().max(rounded.max.abs()).max_element() * f64::from(f32::EPSILON);
+        let Some(strips) = Strips::of(&rounded, radius) else {
+            return Ok(None);
+        };
+        let levels = options.tolerance.as_levels();
+        // Density changes by at most 2 / π over the radius.
+        let rounding = 255.0 * step * FRAC_2_PI / radius;
+        let share = levels * ROUNDING_SHARE;
+        if rounding > share {
+            return Ok(None);
+        }
+        let error = strips.mesh(
+            levels - share,
+            step,
+            options.max_vertices,
+            &mut scratch.strips,
+            sink,
+        )?;
+        Ok(error.map(|error| MeshQuality {
+            error_levels: error + rounding,
+            complete: true,
+        }))
+    }
+
+    /// The mesh by triangulation and refinement.
+    fn refined(&self, options: &MeshOptions) -> ShadowMesh {
+        let options = *options;
         let levels = options.tolerance.as_levels();
         let radius = self.radius();
         let facet = self.extent() * FACET;
@@ -191,8 +294,22 @@ impl Shadow {
             }
             let loops = |knot: &Knot| (*knot, tangent_loops(&circles, knot.t, flat));
             let rings = pieces.knots.iter().map(loops).collect();
-            let field = Field::new(&self.exact_outline().moved(-center), radius);
-            return Refinement::new(field, options, rings).run(center, step);
+            // What errors are measured against may itself be a little off, as long as that is stated.
+            let share = FIELD_SHARE * levels;
+            let field = if share > EXACT_SHARE {
+                Field::new(
+                    &self.outline(flatness(share, radius, 0.0)).moved(-center),
+                    radius,
+                )
+            } else {
+                Field::new(&self.exact_outline().moved(-center), radius)
+            };
+            let unsure = if self.is_fixed() {
+                0.0
+            } else {
+                share.max(EXACT_SHARE)
+            };
+            return Refinement::new(field, options, rings).run(center, step, unsure / 255.0);
         }
     }
 }
@@ -235,6 +352,9 @@ const UMBRA_FACET: f64 = 1e-7;
 /// The part of the tolerance that flattening curves may use up.
 const FLATTENING_SHARE: f64 = 0.1;
 
+/// The part that it may use up where errors are measured.
+const FIELD_SHARE: f64 = 0.05;
+
 /// The part of the tolerance that straight pieces of the profile may use. Were it all, as with five pieces for one level,
 /// corners would need three times the triangles for the thousandths that are left.
 const SLACK: f64 = 0.85;
@@ -248,6 +368,9 @@ const COARSEST_RING: f64 = 0.02;
 
 /// The narrowest penumbra that is drawn, in steps of `f32` at its coordinates.
 const NARROWEST: f64 = 64.0;
+
+/// The part of the tolerance that strips leave to the rounding of their vertices.
+const ROUNDING_SHARE: f64 = 1.0 / 256.0;
 
 /// How far the chords of a hard shadow's arcs may be from them, over its extent.
 const FACET: f64 = 1e-5;

@@ -10,10 +10,11 @@ use crate::density::grid::GridScratch;
 use crate::density::nine_patch::NinePatchScratch;
 use crate::density::rows::Rows;
 use crate::hidden::inside::Inside;
+use crate::mesh::strips::StripScratch;
 use crate::outline::Edge;
 
-/// Buffers that pixel methods need while they work, kept so that drawing again allocates little or nothing. It holds no
-/// results: any scratch serves any shadow.
+/// Buffers that drawings need while they work, kept so that drawing again allocates little or nothing, and tables and
+/// templates of the last corners. What it holds changes no result: any scratch serves any shadow.
 #[derive(Debug)]
 pub struct Scratch {
     /// The best SIMD level of this machine. All give the same bits.
@@ -26,6 +27,7 @@ pub struct Scratch {
     pub(crate) circle: Profile,
     pub(crate) inside: Inside,
     pub(crate) fusion: Fusion,
+    pub(crate) strips: StripScratch,
     /// The columns of a row that are to be drawn.
     pub(crate) wanted: Vec<Range<i64>>,
 }
@@ -53,6 +55,7 @@ impl Scratch {
             circle: Profile::default(),
             inside: Inside::default(),
             fusion: Fusion::default(),
+            strips: StripScratch::default(),
             wanted: Vec::new(),
         }
     }

@@ -253,6 +253,11 @@ impl Shadow {
         Cow::Owned(outline)
     }
 
+    /// Whether the outline is exact: no curve of it is cut into lines.
+    pub(crate) fn is_fixed(&self) -> bool {
+        self.curved.is_empty()
+    }
+
     /// The outline for questions that no pixel is in the way of.
     pub(crate) fn exact_outline(&self) -> &Outline {
         if self.curved.is_empty() {

@@ -3,7 +3,10 @@
 #![expect(clippy::unwrap_used, reason = "a case that is refused fails the test")]
 
 use penumbral::plan::Method;
-use penumbral::{Color, FillRule, Grid, Hidden, Light, Paint, Path, PixelOptions, Scratch, Shape};
+use penumbral::{
+    Color, FillRule, Grid, Hidden, Light, MeshBuffers, Paint, Path, PixelOptions, Scratch, Shape,
+    Tolerance,
+};
 
 fn shapes() -> Vec<(&'static str, Vec<Shape>)> {
     let mut heart = Path::new();
@@ -102,6 +105,34 @@ fn a_warm_drawing_takes_no_memory() {
                         "{name} at r {radius} by {method:?}, hidden {hides}"
                     );
                 }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_warm_mesh_of_a_rounded_rectangle_takes_no_memory() {
+    let (mut buffers, mut scratch) = (MeshBuffers::<u16>::new(), Scratch::new());
+    for (name, shapes) in shapes().into_iter().take(3) {
+        for radius in [1.5_f32, 6.0, 12.0, 30.0] {
+            let light = Light::directional([0.0, 3.0], radius).unwrap();
+            let mut mesh = |place: f32| {
+                let moved = shapes[0]
+                    .transformed([1.0, 0.0, 0.0, 1.0, place, 0.0])
+                    .unwrap();
+                let shadow = light.cast(&moved, 1.0, 0.0).unwrap();
+                let mut into = || {
+                    buffers.clear();
+                    let tolerance = Tolerance::ONE_LEVEL;
+                    let quality = shadow.mesh_into(&mut buffers, tolerance, &mut scratch);
+                    assert!(quality.unwrap().complete);
+                };
+                into();
+                allocation_counter::measure(into).count_total
+            };
+            // Where it is moved to does not matter.
+            for place in [0.0, 17.3] {
+                assert_eq!(mesh(place), 0, "{name} at r {radius}");
             }
         }
     }

@@ -9,10 +9,11 @@ use std::collections::HashMap;
 
 use glam::DVec2;
 use spade::handles::{FixedUndirectedEdgeHandle, FixedVertexHandle};
-use spade::{Point2, Triangulation, mitigate_underflow};
+use spade::{FloatTriangulation, Point2, Triangulation, mitigate_underflow};
 
 use super::profile::Profile;
 use super::regions::{Face, Region, Triangles, Vertex, faces};
+use super::samples::{Weights, mix, mix_densities, worst};
 use super::settle::settle;
 use super::umbra::{self, LoopVertex};
 use super::{MeshOptions, MeshVertex, Ring, ShadowMesh};
@@ -21,27 +22,30 @@ use crate::density::Field;
 /// Rounds of refinement at most. Each halves the larger triangles: the finest tolerance takes about 12.
 const ROUNDS: usize = 40;
 
-/// Vertices are not added nearer to another than this, over the penumbra radius: nothing would be gained.
-const NEAREST: f64 = 1e-3;
+/// Vertices nearer to a ring than this, over the penumbra radius, are put on it.
+const BESIDE: f64 = 1e-3;
 
-/// The part of the tolerance that an error found by sampling may reach: between samples it is up to a tenth larger.
-const SAMPLED: f64 = 0.9;
+/// Vertices are not added nearer to another than this, over the penumbra radius: nothing would be gained. Slivers along a
+/// ring are wrong nearer to their vertices than they should be.
+const NEAREST: f64 = 5e-5;
 
-/// Where a triangle is sampled, as weights of its corners: along its edges by eighths (the corners' own errors are known),
-/// and inside.
-const EDGE_SAMPLES: [f64; 7] = [0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875];
-const INNER_SAMPLES: [[f64; 3]; 10] = [
-    [1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0],
-    [0.6, 0.2, 0.2],
-    [0.2, 0.6, 0.2],
-    [0.2, 0.2, 0.6],
-    [0.45, 0.45, 0.1],
-    [0.45, 0.1, 0.45],
-    [0.1, 0.45, 0.45],
-    [0.8, 0.1, 0.1],
-    [0.1, 0.8, 0.1],
-    [0.1, 0.1, 0.8],
-];
+/// The part of the tolerance that an error found by sampling may reach: the tops between samples are sought, but could be
+/// missed.
+const SAMPLED: f64 = 0.97;
+
+/// Into how many parts a triangle's sides are cut to find what is wrong, and to be sure of it.
+const COARSE: u32 = 4;
+const FINE: u32 = 8;
+
+/// How far samples are apart at most, in penumbra radii: long triangles run past corners that are shorter than a part.
+const SPACING: f64 = 0.2;
+
+/// The part of the tolerance that is left to interpolation at least, however little rounding leaves: what is above the
+/// tolerance then is reported.
+const LEAST_SHARE: f64 = 0.25;
+
+/// From which part of the limit on the way from samples to the tops beside them is gone.
+const NEAR: f64 = 0.7;
 
 /// What sampling found out about a triangle.
 #[derive(Debug, Clone, Copy)]
@@ -52,6 +56,8 @@ struct Assessment {
     worst: DVec2,
     /// The largest difference from the exact density.
     exact_error: f64,
+    /// Whether all of it was looked at, and not only some samples.
+    sure: bool,
 }
 
 pub(super) struct Refinement {
@@ -98,22 +104,18 @@ impl Refinement {
         refinement
     }
 
-    /// The mesh, its vertices moved by `center`, where positions in `f32` are up to `rounding` off.
-    pub(super) fn run(mut self, center: DVec2, rounding: f64) -> ShadowMesh {
-        let limit = self.options.tolerance.as_levels() / 255.0 * SAMPLED;
-        let nearest = NEAREST * self.field.radius();
-        let mut complete = false;
+    /// The mesh, its vertices moved by `center`, where positions in `f32` are up to `rounding` off and the field is up to
+    /// `unsure` (density).
+    pub(super) fn run(mut self, center: DVec2, rounding: f64, unsure: f64) -> ShadowMesh {
+        // Density changes by at most 2 / π over the radius.
+        let noise = unsure + rounding * FRAC_2_PI / self.field.radius();
+        let tolerance = self.options.tolerance.as_levels() / 255.0;
+        let limit = SAMPLED * (tolerance - noise).max(LEAST_SHARE * tolerance);
         for _ in 0..ROUNDS {
-            let mut wrong: Vec<(f64, [usize; 3])> = Vec::new();
-            for face in self.faces(Region::Penumbra) {
-                let (key, assessment) = self.assess(face);
-                if assessment.error > limit {
-                    wrong.push((assessment.error, key));
-                }
-            }
-            complete = wrong.is_empty();
-            if complete {
-                break;
+            let faces = self.faces(Region::Penumbra);
+            let mut wrong = self.wrong(&faces, limit, false);
+            if wrong.is_empty() {
+                wrong = self.wrong(&faces, limit, true);
             }
             wrong.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
             let before = self.triangles.num_vertices();
@@ -121,13 +123,25 @@ impl Refinement {
                 if self.triangles.num_vertices() >= self.options.max_vertices {
                     break;
                 }
-                self.mend(key, limit, nearest);
+                self.mend(key, limit);
             }
             if self.triangles.num_vertices() == before {
                 break;
             }
         }
-        self.finish(center, rounding, complete)
+        self.finish(center, limit, noise)
+    }
+
+    /// The faces that are wrong by more than `limit` where a vertex would mend it, as far as sampled or surely.
+    fn wrong(&mut self, faces: &[Face], limit: f64, surely: bool) -> Vec<(f64, [usize; 3])> {
+        let mut wrong = Vec::new();
+        for &face in faces {
+            let (key, assessment) = self.assess(face, surely, limit);
+            if assessment.error > limit {
+                wrong.push((assessment.error, key));
+            }
+        }
+        wrong
     }
 
     /// The density that a vertex or sample at `point` should have.
@@ -167,58 +181,63 @@ impl Refinement {
         faces(&self.triangles, self.offsets.len() - 1, wanted)
     }
 
-    fn assess(&mut self, face: Face) -> ([usize; 3], Assessment) {
+    fn assess(&mut self, face: Face, surely: bool, limit: f64) -> ([usize; 3], Assessment) {
         let corners = self
             .triangles
             .face(face)
             .vertices()
             .map(|vertex| vertex.fix());
         let key = corners.map(|corner| corner.index());
-        if let Some(known) = self.assessed.get(&key) {
-            return (key, *known);
+        let known = self.assessed.get(&key).copied();
+        if let Some(known) = known.filter(|known| known.sure || !surely) {
+            return (key, known);
         }
         let data = corners.map(|corner| *self.triangles.vertex(corner).data());
         let at = data.map(|vertex| DVec2::new(vertex.position.x, vertex.position.y));
+        let densities = data.map(|vertex| vertex.density);
+        let last = self.offsets.len() - 1;
+        // Along the two edges of the penumbra density is 0 and 1 by definition: what is wrong there is their arcs'
+        // flattening, and no vertex on the chord mends it.
+        let fixed = [0, 1, 2].map(|opposite: usize| {
+            let (a, b) = ((opposite + 1) % 3, (opposite + 2) % 3);
+            data[a].ring == data[b].ring
+                && (data[a].ring == Some(0) || data[a].ring == Some(last))
+                && self.triangles.exists_constraint(corners[a], corners[b])
+        });
+        let (field, profile) = (&mut self.field, self.options.profile);
+        let radius = field.radius();
         let mut result = Assessment {
             error: 0.0,
             worst: at[0],
             exact_error: 0.0,
+            sure: surely,
         };
-        let last = self.offsets.len() - 1;
-        for edge in 0..3 {
-            let (a, b) = (edge, (edge + 1) % 3);
-            // Along the two edges of the penumbra density is 0 and 1 by definition: what is wrong there is their arcs'
-            // flattening, and no vertex on the chord mends it.
-            let fixed = data[a].ring == data[b].ring
-                && (data[a].ring == Some(0) || data[a].ring == Some(last))
-                && self.triangles.exists_constraint(corners[a], corners[b]);
-            for share in EDGE_SAMPLES {
-                let point = at[a].lerp(at[b], share);
-                let density = data[a].density + (data[b].density - data[a].density) * share;
-                self.sample(point, density, !fixed, &mut result);
+        // Where a vertex would mend nothing there is no error to be mended.
+        let look = |weights: Weights| {
+            let exact = field.at(mix(at, weights));
+            let density = mix_densities(densities, weights);
+            result.exact_error = result.exact_error.max((density - exact).abs());
+            let mendable = (0..3).all(|i| !fixed[i] || weights[i] > 0.0);
+            if mendable {
+                density - profile.in_place_of(exact)
+            } else {
+                0.0
             }
-        }
-        for [a, b, c] in INNER_SAMPLES {
-            let point = at[0] * a + at[1] * b + at[2] * c;
-            let density = data[0].density * a + data[1].density * b + data[2].density * c;
-            self.sample(point, density, true, &mut result);
-        }
+        };
+        let (parts, near) = if surely {
+            (FINE, NEAR * limit)
+        } else {
+            (COARSE, f64::INFINITY)
+        };
+        let top = worst(at, parts, SPACING * radius, near, look, |_, _| ());
+        (result.error, result.worst) = (top.0, mix(at, top.1));
         self.assessed.insert(key, result);
         (key, result)
     }
 
-    /// Compares an interpolated density at a point where a vertex may be added or not.
-    fn sample(&mut self, point: DVec2, density: f64, mendable: bool, result: &mut Assessment) {
-        let (exact, target) = self.target(point);
-        result.exact_error = result.exact_error.max((density - exact).abs());
-        let error = (density - target).abs();
-        if mendable && error > result.error {
-            (result.error, result.worst) = (error, point);
-        }
-    }
-
     /// Adds a vertex at a triangle's worst point, unless vertices added since have mended it.
-    fn mend(&mut self, key: [usize; 3], limit: f64, nearest: f64) {
+    fn mend(&mut self, key: [usize; 3], limit: f64) {
+        let [beside, nearest] = [BESIDE, NEAREST].map(|share| share * self.field.radius());
         let Some(&assessment) = self.assessed.get(&key) else {
             return;
         };
@@ -239,7 +258,7 @@ impl Refinement {
             DVec2::new(position.x, position.y)
         };
         let is_near = |handle| (place(handle) - assessment.worst).length() < nearest;
-        match self.constraint_near(assessment.worst, nearest) {
+        match self.constraint_near(assessment.worst, beside) {
             Some((from, to, edge)) => {
                 // A vertex beside a constraint by a rounding error would leave a triangle of no area: the constraint is
                 // taken away first and led by way of the vertex after.
@@ -273,31 +292,17 @@ impl Refinement {
         FixedVertexHandle,
         FixedUndirectedEdgeHandle,
     )> {
-        use spade::PositionInTriangulation::{OnEdge, OnFace};
-        let faces = match self.triangles.locate(Point2::new(point.x, point.y)) {
-            OnFace(face) => vec![self.triangles.face(face)],
-            OnEdge(edge) => {
-                let edge = self.triangles.directed_edge(edge);
-                [edge.face(), edge.rev().face()]
-                    .into_iter()
-                    .filter_map(|face| face.as_inner())
-                    .collect()
-            }
-            _ => return None,
-        };
-        let constraints = faces
-            .iter()
-            .flat_map(|face| face.adjacent_edges())
-            .filter(|edge| edge.is_constraint_edge());
-        let near = constraints
-            .map(|edge| (edge.distance_2(Point2::new(point.x, point.y)), edge))
-            .filter(|(squared, _)| *squared < distance * distance);
+        // Slivers may lie between: the faces at the point alone do not tell.
+        let center = Point2::new(point.x, point.y);
+        let edges = self
+            .triangles
+            .get_edges_in_circle(center, distance * distance);
+        let near = edges
+            .filter(|edge| edge.is_constraint_edge())
+            .map(|edge| (edge.distance_2(center), edge));
         let (_, edge) = near.min_by(|a, b| a.0.total_cmp(&b.0))?;
-        Some((
-            edge.from().fix(),
-            edge.to().fix(),
-            edge.as_undirected().fix(),
-        ))
+        let [from, to] = edge.vertices().map(|vertex| vertex.fix());
+        Some((from, to, edge.fix()))
     }
 
     /// The difference at a point in the triangulation as it is now.
@@ -335,15 +340,14 @@ impl Refinement {
         (density - self.target(point).1).abs()
     }
 
-    fn finish(mut self, center: DVec2, rounding: f64, complete: bool) -> ShadowMesh {
-        let mut mesh = ShadowMesh {
-            complete,
-            ..ShadowMesh::empty()
-        };
+    fn finish(mut self, center: DVec2, limit: f64, noise: f64) -> ShadowMesh {
+        let mut mesh = ShadowMesh::empty();
         let mut error: f64 = 0.0;
         let faces = self.faces(Region::Penumbra);
         for &face in &faces {
-            error = error.max(self.assess(face).1.exact_error);
+            let (_, assessment) = self.assess(face, true, limit);
+            error = error.max(assessment.exact_error);
+            mesh.complete &= assessment.error <= limit;
         }
         // In `f32` vertices of small penumbrae may come to lie on one another: they become one, and triangles between them
         // nothing.
@@ -385,10 +389,10 @@ impl Refinement {
             .collect();
         let umbra = self.options.profile.in_place_of(1.0);
         error = error.max(if loops.is_empty() { 0.0 } else { 1.0 - umbra });
-        // Density changes by at most 2 / π over the radius.
-        error += rounding * FRAC_2_PI / self.field.radius();
+        error = error / SAMPLED + noise;
         mesh.error_levels = if self.broken { 255.0 } else { error * 255.0 };
-        mesh.complete &= !self.broken;
+        let kept = mesh.error_levels <= self.options.tolerance.as_levels();
+        mesh.complete &= !self.broken && (kept || self.options.profile != Profile::Disc);
         match umbra::fill(&loops, |_| None) {
             Some(filled) => triangles.extend(filled),
             None => triangles.extend(self.faces(Region::Umbra).iter().map(corners)),

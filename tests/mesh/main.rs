@@ -1,0 +1,13 @@
+//! Meshes: their promises as structures, and their error against the exact density.
+
+#![expect(
+    clippy::unwrap_used,
+    reason = "a fixture that cannot be read fails the test"
+)]
+
+mod checks;
+mod outlines;
+mod profiles;
+mod random;
+mod sinks;
+mod strips;
