@@ -90,15 +90,15 @@ pub fn shapes(random: &mut Random, side: f32) -> (&'static str, Vec<Shape>, Vec<
     let center = [x + w / 2.0, y + h / 2.0];
     let half = w.min(h) / 2.0;
     let turned = |shape: Shape, random: &mut Random| {
-        let (sin, cos) = random.between(0.0, 3.2).sin_cos();
+        let (sin, cos) = libm::sincosf(random.between(0.0, 3.2));
         let moved = shape.translated(center.map(|v| -v)).unwrap();
         let turned = moved.transformed([cos, sin, -sin, cos, 0.0, 0.0]).unwrap();
         turned.translated(center).unwrap()
     };
     let polar = |angle: f32, radius: f32| {
         [
-            center[0] + radius * angle.cos(),
-            center[1] + radius * angle.sin(),
+            center[0] + radius * libm::cosf(angle),
+            center[1] + radius * libm::sinf(angle),
         ]
     };
     match random.below(19) {
@@ -219,8 +219,8 @@ pub fn shapes(random: &mut Random, side: f32) -> (&'static str, Vec<Shape>, Vec<
                 let (from, to) = (radii[i], radii[(i + 1) % count]);
                 let (a, b) = (i as f32 * step, (i + 1) as f32 * step);
                 path.cubic_to(
-                    polar(a + arm, from / arm.cos()),
-                    polar(b - arm, to / arm.cos()),
+                    polar(a + arm, from / libm::cosf(arm)),
+                    polar(b - arm, to / libm::cosf(arm)),
                     polar(b, to),
                 );
             }
@@ -356,7 +356,7 @@ pub fn radius(random: &mut Random, lengths: &[f32]) -> f32 {
         4..6 => random.pick(lengths).min(200.0),
         6 => (random.pick(lengths) * random.between(0.97, 1.03)).min(200.0),
         7 => random.between(0.0, 3.0),
-        _ => 3.0 * random.between(0.0, 6.06).exp2(),
+        _ => 3.0 * libm::exp2f(random.between(0.0, 6.06)),
     }
 }
 
