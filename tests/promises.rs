@@ -93,10 +93,10 @@ fn densities_are_fractions_and_as_right_as_they_are_to_be() {
 fn mass_is_the_area_of_the_outline() {
     let (mut scratch, mut summary) = (Scratch::new(), Summary::default());
     for (seed, mut random) in seeds("mass", 60) {
-        let (name, shapes, lengths) = shapes(&mut random, 32.0);
+        let (name, shapes, lengths) = shapes(&mut random, 64.0);
         let radius = radius(&mut random, &lengths).min(24.0);
         let reach = radius.ceil() + 10.0;
-        let side = 2 * reach as u32 + 40;
+        let side = 2 * reach as u32 + 72;
         let grid = Grid::new([-reach, -reach], [side, side], 1.0).unwrap();
         let mut sum = |radius: f32, method| {
             let shadow = cast(directional(radius), &shapes);
