@@ -104,8 +104,8 @@ fn cases() -> Vec<Case> {
         Case {
             name: "cards at many",
             canvas: [200, 200],
-            surfaces: (0..60).map(|i| card(i, "", i % 15)).collect(),
-            vertices: 60 * 4,
+            surfaces: (0..12).map(|i| card(i, "", i % 4)).collect(),
+            vertices: 12 * 4,
             curves: (0, 0.0),
             crossings: 0,
         },
