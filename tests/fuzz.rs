@@ -81,10 +81,7 @@ fn texts(name: &str) -> Vec<String> {
 
 #[test]
 fn nothing_that_is_fuzzed_fails() {
-    let (first, count) = (
-        setting("PENUMBRAL_SEED", 0),
-        setting("PENUMBRAL_CASES", 60),
-    );
+    let (first, count) = (setting("PENUMBRAL_SEED", 0), setting("PENUMBRAL_CASES", 60));
     println!("{count} cases a target from seed {first} on");
     for (name, target) in TARGETS {
         let seeds = path::Path::new(env!("CARGO_MANIFEST_DIR"))
