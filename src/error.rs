@@ -36,6 +36,9 @@ pub type Result<T, E = Error> = core::result::Result<T, E>;
 /// | [`OtherGrid`](Error::OtherGrid) | [`PixelOptions::hidden`](crate::PixelOptions) that was made for another grid |
 /// | [`NotFlat`](Error::NotFlat) | [`Pose::of_corners`](crate::Pose::of_corners) with the elevations 5, 9, 14, 11 |
 /// | [`NotOpaque`](Error::NotOpaque) | a scene's background `#fafafa80` |
+/// | [`NotInSvg`](Error::NotInSvg) | `Scene::to_svg` of a scene with linear blending |
+/// | [`NotClipped`](Error::NotClipped) | `Surface::clipped` of a tilted surface |
+/// | [`Stroke`](Error::Stroke) | a stroke of more vertices than a `u32` counts |
 /// | [`Scene`](Error::Scene) | a scene file that ends early, has an unknown field or any of the above |
 /// | [`Stopped`](Error::Stopped) | a `Renderer::render_while` that is told not to go on |
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -256,6 +256,7 @@ impl Scene {
         }
         limits
             .check(&scene)
+            .and_then(|()| at_most("surfaces", fields.surfaces.len(), limits.surfaces))
             .map_err(|error| whole.refuse("scene", &error))?;
         let mut members = Members {
             text,
