@@ -608,7 +608,7 @@ mod failures {
             (r#""ambient": 0.05"#, r#""ambient": -1"#, "ambient: ambient is -1"),
             (r#""z": 600"#, r#""z": 0"#, "light.z is 0"),
             (r#""radius": 800"#, r#""radius": -800"#, "light.radius is -800"),
-            (r#", "radius": 800"#, "", "light: missing field `radius`"),
+            (r#", "radius": 800"#, "", "light: a light needs `x`, `y`, `z` and `radius`"),
             (r#""surfaces": ["#, r#""surfaces": [8, "#, "surfaces[0]: invalid type: integer `8`"),
         ];
         assert_all(cases.into_iter().flat_map(|(old, new, part)| {
