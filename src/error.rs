@@ -12,13 +12,35 @@ pub const MAX_PIXELS: u64 = 1 << 25;
 /// A path may not have more segments, and a polygon not more points, than this.
 pub const MAX_SEGMENTS: usize = 1 << 20;
 
-/// A scene file may not be longer than this, in bytes.
-pub const MAX_SCENE_LENGTH: usize = 1 << 28;
+/// A scene file may not be longer than this, in bytes: a path of [`MAX_SEGMENTS`] with all its digits fits twice.
+pub const MAX_SCENE_LENGTH: usize = 1 << 26;
 
 /// The result of whatever can refuse its input.
 pub type Result<T, E = Error> = core::result::Result<T, E>;
 
 /// Why an input was refused. Each names the field and the value.
+///
+/// | error | an input that causes it |
+/// |---|---|
+/// | [`NotFinite`](Error::NotFinite) | `Shape::rect(f32::NAN, 0.0, 1.0, 1.0)` |
+/// | [`OutOfRange`](Error::OutOfRange) | `Shape::rect(1e9, 0.0, 1.0, 1.0)`, `Tolerance::levels(65.0)` |
+/// | [`NotPositive`](Error::NotPositive) | `Shape::circle([0.0, 0.0], 0.0)`, a polygon whose points are on one line |
+/// | [`EmptyPath`](Error::EmptyPath) | `Shape::path(&Path::new(), FillRule::NonZero)` |
+/// | [`TooMany`](Error::TooMany) | a polygon of more than [`MAX_SEGMENTS`] points, a scene over its [`Limits`](crate::Limits) |
+/// | [`PathData`](Error::PathData) | `Path::from_svg("M 0 0 L")` |
+/// | [`CasterNotBelowLight`](Error::CasterNotBelowLight) | a cast from elevation 600 under a light at z = 600 |
+/// | [`CasterBelowReceiver`](Error::CasterBelowReceiver) | a cast from elevation 1 on a receiver at 2 |
+/// | [`ShadowTooLarge`](Error::ShadowTooLarge) | a cast from elevation 599.99994 under a light at z = 600 |
+/// | [`PictureSize`](Error::PictureSize) | `Grid::new([0.0, 0.0], [0, 5], 1.0)`, a canvas of a million units square |
+/// | [`BufferSize`](Error::BufferSize) | 99 bytes for a grid of 10 x 10, a pixmap of another size than its scene |
+/// | [`OtherGrid`](Error::OtherGrid) | [`PixelOptions::hidden`](crate::PixelOptions) that was made for another grid |
+/// | [`NotFlat`](Error::NotFlat) | [`Pose::of_corners`](crate::Pose::of_corners) with the elevations 5, 9, 14, 11 |
+/// | [`NotOpaque`](Error::NotOpaque) | a scene's background `#fafafa80` |
+/// | [`NotInSvg`](Error::NotInSvg) | `Scene::to_svg` of a scene with linear blending |
+/// | [`NotClipped`](Error::NotClipped) | `Surface::clipped` of a tilted surface |
+/// | [`Stroke`](Error::Stroke) | a stroke of more vertices than a `u32` counts |
+/// | [`Scene`](Error::Scene) | a scene file that ends early, has an unknown field or any of the above |
+/// | [`Stopped`](Error::Stopped) | a `Renderer::render_while` that is told not to go on |
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -28,6 +50,9 @@ pub enum Error {
         /// What was made for them.
         field: &'static str,
     },
+    /// A drawing was stopped by its caller.
+    #[error("the drawing was stopped: what is drawn of the picture is not whole")]
+    Stopped,
     /// A number is NaN or infinite.
     #[error("{field} is {}: give a finite number", Shown(*value))]
     NotFinite {
@@ -126,8 +151,8 @@ pub enum Error {
         /// The field that holds it.
         field: &'static str,
     },
-    /// A path, polygon or list longer than its limit.
-    #[error("{field} has {count} parts, over the limit of {limit}: simplify it or split it")]
+    /// A path, polygon, list or scene larger than its limit.
+    #[error("{count} {field}, over the limit of {limit}: simplify or split what has them")]
     TooMany {
         /// The field that holds it.
         field: &'static str,

@@ -66,7 +66,7 @@
 //! | `grid.rs`, `hidden.rs`, `paint.rs` | [`Grid`], [`Hidden`], [`Paint`]: the pixels, those that nobody sees, what they take |
 //! | `nine_patch.rs` | [`NinePatch`], [`ShadowKey`]: masks that stretch, to be kept |
 //! | `parallel.rs` | bands of rows on several threads |
-//! | `scratch.rs`, `error.rs` | [`Scratch`], [`Error`] |
+//! | `scratch.rs`, `error.rs`, `limits.rs` | [`Scratch`], [`Error`], [`Limits`] |
 //! | `bin/penumbral` | the command line |
 //!
 //! # Features
@@ -95,6 +95,7 @@ mod grid;
 mod hidden;
 mod image;
 mod light;
+mod limits;
 mod mesh;
 mod nine_patch;
 mod outline;
@@ -124,6 +125,7 @@ pub use grid::Grid;
 pub use hidden::Hidden;
 pub use image::Image;
 pub use light::Light;
+pub use limits::Limits;
 #[cfg(feature = "lyon")]
 pub use mesh::LyonBuffers;
 pub use mesh::{

@@ -185,7 +185,7 @@ impl Path {
         }
         if count > MAX_SEGMENTS {
             return Err(Error::TooMany {
-                field: "path",
+                field: "path segments",
                 count,
                 limit: MAX_SEGMENTS,
             });

@@ -156,7 +156,7 @@ impl Shape {
         let count = rings.iter().map(|ring| ring.as_ref().len()).sum();
         if count > MAX_SEGMENTS {
             return Err(Error::TooMany {
-                field: "polygon",
+                field: "polygon points",
                 count,
                 limit: MAX_SEGMENTS,
             });
@@ -236,6 +236,14 @@ impl Shape {
     /// As [`Shape::transformed`].
     pub fn translated(&self, offset: [f32; 2]) -> Result<Self> {
         self.transformed([1.0, 0.0, 0.0, 1.0, offset[0], offset[1]])
+    }
+
+    /// How many lines, curves and arcs it is made of.
+    pub(crate) fn vertices(&self) -> usize {
+        self.contours
+            .iter()
+            .map(|contour| contour.segments.len())
+            .sum()
     }
 
     pub(crate) fn mapped(&self, affine: &DAffine2) -> Self {

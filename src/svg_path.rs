@@ -24,7 +24,7 @@ impl Path {
         for (count, segment) in PathParser::from(data).enumerate() {
             if count >= MAX_SEGMENTS {
                 return Err(Error::TooMany {
-                    field: "SVG path data",
+                    field: "path segments",
                     count: count + 1,
                     limit: MAX_SEGMENTS,
                 });

@@ -9,9 +9,11 @@
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use std::sync::atomic::{AtomicU32, Ordering};
-use std::{env, fs, io, process};
+use std::time::Instant;
+use std::{env, fs, io, process, thread};
 
 use image::{DynamicImage, ImageBuffer, Luma, RgbaImage};
+use penumbral::{MAX_SCENE_LENGTH, MAX_SEGMENTS};
 use serde_json::Value;
 
 /// One card of 40 x 20 in the middle of the canvas, right below the light.
@@ -606,7 +608,7 @@ mod failures {
             (r#""ambient": 0.05"#, r#""ambient": -1"#, "ambient: ambient is -1"),
             (r#""z": 600"#, r#""z": 0"#, "light.z is 0"),
             (r#""radius": 800"#, r#""radius": -800"#, "light.radius is -800"),
-            (r#", "radius": 800"#, "", "light: missing field `radius`"),
+            (r#", "radius": 800"#, "", "light: a light needs `x`, `y`, `z` and `radius`"),
             (r#""surfaces": ["#, r#""surfaces": [8, "#, "surfaces[0]: invalid type: integer `8`"),
         ];
         assert_all(cases.into_iter().flat_map(|(old, new, part)| {
@@ -731,6 +733,90 @@ mod failures {
             2,
             "the scene and the picture alone"
         );
+    }
+
+    /// Whoever reads the old file goes on reading it: the new one is another, with its name.
+    #[cfg(unix)]
+    #[test]
+    fn an_earlier_output_is_never_written_over() {
+        let folder = Folder::with_scene(CARD);
+        for (arguments, name) in [
+            ("render scene.json -o out.png", "out.png"),
+            ("mesh scene.json -o out.obj", "out.obj"),
+            ("density scene.json -o out.png", "out.png"),
+        ] {
+            fs::write(folder.file(name), "earlier").unwrap();
+            let earlier = fs::File::open(folder.file(name)).unwrap();
+            folder.succeed(arguments);
+            assert_eq!(io::read_to_string(earlier).unwrap(), "earlier");
+            assert_ne!(fs::read(folder.file(name)).unwrap(), b"earlier");
+        }
+    }
+
+    #[test]
+    fn who_kills_it_finds_the_old_file_or_the_new_one() {
+        let folder = Folder::with_scene(card_with("[60, 40]", "[700, 500]"));
+        let arguments = "density scene.json -o out.png";
+        let start = Instant::now();
+        folder.succeed(arguments);
+        let (whole, time) = (fs::read(folder.file("out.png")).unwrap(), start.elapsed());
+        let (mut killed, mut finished) = (0, 0);
+        for part in 0..24 {
+            fs::write(folder.file("out.png"), "earlier").unwrap();
+            let mut child = folder
+                .command(arguments)
+                .stdout(Stdio::null())
+                .spawn()
+                .unwrap();
+            thread::sleep(time.mul_f64(f64::from(part) / 20.0));
+            // It may have ended by itself.
+            let _ = child.kill();
+            child.wait().unwrap();
+            let found = fs::read(folder.file("out.png")).unwrap();
+            assert!(
+                found == b"earlier" || found == whole,
+                "{} bytes",
+                found.len()
+            );
+            killed += u32::from(found == b"earlier");
+            finished += u32::from(found == whole);
+        }
+        println!("{killed} times the old file, {finished} times the new one");
+        assert!(killed > 0);
+    }
+
+    #[test]
+    fn files_without_an_end_are_refused() {
+        // Longer than may be read, but of no blocks.
+        let folder = Folder::new();
+        let file = fs::File::create(folder.file("scene.json")).unwrap();
+        file.set_len(MAX_SCENE_LENGTH as u64 + 1).unwrap();
+        assert_all([folder.refuse(
+            "explain scene.json",
+            "67108865 bytes, over the limit of 67108864",
+        )]);
+        let points = vec!["[0, 0]"; MAX_SEGMENTS + 1].join(",");
+        let surface = |points: &str| {
+            card_of(&format!(
+                r#"{{"shape": "polygon", "points": [{points}], "elevation": 8}}"#
+            ))
+        };
+        let wide = Folder::with_scene(surface(&points));
+        assert_all([wide.refuse(
+            "explain scene.json",
+            "1048577 polygon points, over the limit",
+        )]);
+        // Each within its own limit, but not all together.
+        let spike = "[0, 0], [9, 0], [9, 9],".repeat(200_000);
+        let many = vec![surface(&format!("{spike}[0, 9]")); 2];
+        let (first, second) = (&many[0], &many[1]);
+        let (head, _) = first.split_at(first.len() - 2);
+        let (_, tail) = second.split_once(r#""surfaces": ["#).unwrap();
+        let wide = Folder::with_scene(format!("{head},{tail}"));
+        assert_all([wide.refuse(
+            "explain scene.json",
+            "1200000 vertices, over the limit of 1048576",
+        )]);
     }
 
     #[test]

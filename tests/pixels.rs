@@ -3,422 +3,30 @@
 
 #![expect(clippy::unwrap_used, reason = "a case that is refused fails the test")]
 
-use std::collections::BTreeMap;
+#[expect(dead_code, reason = "other tests take more of it")]
+mod common;
 
+use common::{Case, Random, Summary, bits, by, case, densities, setting, shapes, worst_of};
 use penumbral::plan::{self, Method, Target};
 use penumbral::{
-    Color, Error, FillRule, Grid, Hidden, Light, Paint, Path, PixelOptions, Scratch, Shadow, Shape,
-    Tolerance,
+    Color, Error, Grid, Hidden, Light, Paint, PixelOptions, Scratch, Shadow, Shape, Tolerance,
 };
-
-/// `SplitMix64` (Steele, Lea & Flood 2014): the same cases on every machine.
-struct Random(u64);
-
-impl Random {
-    fn new(seed: u64) -> Self {
-        Self(seed.wrapping_mul(0xd134_2543_de82_ef95))
-    }
-
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    fn below(&mut self, count: usize) -> usize {
-        (self.next() % count as u64) as usize
-    }
-
-    fn chance(&mut self, share: f32) -> bool {
-        self.between(0.0, 1.0) < share
-    }
-
-    /// On steps of 2^-20 of the way.
-    fn between(&mut self, least: f32, most: f32) -> f32 {
-        least + (most - least) * ((self.next() >> 44) as f32 / 1_048_576.0)
-    }
-
-    fn pick<T: Copy>(&mut self, items: &[T]) -> T {
-        items[self.below(items.len())]
-    }
-}
-
-/// Casters, light and pixels.
-struct Case {
-    name: &'static str,
-    shapes: Vec<Shape>,
-    /// The penumbra radius in pixels.
-    radius: f32,
-    light: Light,
-    shadow: Shadow,
-    grid: Grid,
-}
-
-impl Case {
-    fn label(&self, index: usize) -> String {
-        let (r, per_unit) = (self.radius, self.grid.pixels_per_unit());
-        format!(
-            "case {index}, {} at r {r} px, {per_unit} px a unit",
-            self.name
-        )
-    }
-}
-
-/// Of what kinds shapes are, and lengths of theirs at which something special happens to a penumbra of that radius.
-fn shapes(random: &mut Random, side: f32) -> (&'static str, Vec<Shape>, Vec<f32>) {
-    let phase = |random: &mut Random| match random.below(4) {
-        0 => 0.0,
-        1 => 0.5,
-        _ => random.between(0.0, 1.0),
-    };
-    let size = |random: &mut Random| {
-        let size = side * random.between(0.08, 0.8);
-        if random.chance(0.4) {
-            size.round()
-        } else {
-            size
-        }
-    };
-    let [w, h] = [size(random), size(random)];
-    let [x, y] =
-        [w, h].map(|v| ((side - v) / 2.0 * random.between(0.4, 1.6)).floor() + phase(random));
-    let center = [x + w / 2.0, y + h / 2.0];
-    let half = w.min(h) / 2.0;
-    let turned = |shape: Shape, random: &mut Random| {
-        let (sin, cos) = random.between(0.0, 3.2).sin_cos();
-        let moved = shape.translated(center.map(|v| -v)).unwrap();
-        let turned = moved.transformed([cos, sin, -sin, cos, 0.0, 0.0]).unwrap();
-        turned.translated(center).unwrap()
-    };
-    let polar = |angle: f32, radius: f32| {
-        [
-            center[0] + radius * angle.cos(),
-            center[1] + radius * angle.sin(),
-        ]
-    };
-    match random.below(16) {
-        0 => {
-            let radii = [0; 4].map(|_| {
-                if random.chance(0.2) {
-                    0.0
-                } else {
-                    random.between(0.0, half)
-                }
-            });
-            (
-                "corners of four radii",
-                vec![Shape::rounded_rect(x, y, w, h, radii).unwrap()],
-                vec![w / 2.0, radii[0], radii[2]],
-            )
-        }
-        1 | 2 => {
-            let corner = random.between(0.0, half);
-            (
-                "rounded rectangle",
-                vec![Shape::rounded_rect(x, y, w, h, corner).unwrap()],
-                vec![w / 2.0, h / 2.0, corner],
-            )
-        }
-        3 => (
-            "circle",
-            vec![Shape::circle(center, half).unwrap()],
-            vec![half, 2.0 * half],
-        ),
-        4 => (
-            "pill",
-            vec![Shape::rounded_rect(x, y, w, h, 1e3).unwrap()],
-            vec![half, w / 2.0],
-        ),
-        5 => {
-            let thin = if random.chance(0.3) {
-                1.0
-            } else {
-                random.between(0.02, 2.5)
-            };
-            let flat = random.chance(0.5);
-            let [w, h] = if flat { [w, thin] } else { [thin, h] };
-            let corner = if random.chance(0.5) { 0.0 } else { thin };
-            let sliver = Shape::rounded_rect(x, y, w, h, corner).unwrap();
-            let sliver = if random.chance(0.4) {
-                turned(sliver, random)
-            } else {
-                sliver
-            };
-            ("sliver", vec![sliver], vec![thin / 2.0, w.max(h) / 2.0])
-        }
-        6 | 7 => {
-            let tips = 2 * (3 + random.below(7));
-            let inner = half * random.between(0.15, 0.9);
-            let start = random.between(0.0, 3.0);
-            let wild = random.chance(0.5);
-            let ring: Vec<[f32; 2]> = (0..tips)
-                .map(|i| {
-                    let angle = start + i as f32 * core::f32::consts::TAU / tips as f32;
-                    let radius = if i % 2 == 0 { half } else { inner };
-                    let radius = if wild {
-                        radius * random.between(0.3, 1.0)
-                    } else {
-                        radius
-                    };
-                    polar(angle, radius)
-                })
-                .collect();
-            (
-                if wild { "concave polygon" } else { "star" },
-                vec![Shape::polygon(&[ring], FillRule::NonZero).unwrap()],
-                vec![half, inner],
-            )
-        }
-        8 => {
-            let ring = |radius: f32, count: usize, start: f32| -> Vec<[f32; 2]> {
-                (0..count)
-                    .map(|i| {
-                        polar(
-                            start + i as f32 * core::f32::consts::TAU / count as f32,
-                            radius,
-                        )
-                    })
-                    .collect()
-            };
-            let hole = half * random.between(0.2, 0.95);
-            let count = random.pick(&[3, 4, 6, 24]);
-            let outer = ring(half, random.pick(&[4, 5, 12, 24]), random.between(0.0, 1.0));
-            let rings = [outer, ring(hole, count, random.between(0.0, 1.0))];
-            (
-                "polygon with hole",
-                vec![Shape::polygon(&rings, FillRule::EvenOdd).unwrap()],
-                vec![half, hole, (half - hole) / 2.0],
-            )
-        }
-        9 => {
-            let ring: Vec<[f32; 2]> = (0..5 + random.below(6))
-                .map(|_| [x + random.between(0.0, w), y + random.between(0.0, h)])
-                .collect();
-            let rule = random.pick(&[FillRule::EvenOdd, FillRule::NonZero]);
-            (
-                "self-crossing polygon",
-                vec![Shape::polygon(&[ring], rule).unwrap()],
-                vec![half],
-            )
-        }
-        10 => {
-            let count = 3 + random.below(5);
-            let step = core::f32::consts::TAU / count as f32;
-            let radii: Vec<f32> = (0..count)
-                .map(|_| half * random.between(0.4, 1.0))
-                .collect();
-            let arm = random.between(0.2, 0.45) * step;
-            let mut path = Path::new();
-            path.move_to(polar(0.0, radii[0]));
-            for i in 0..count {
-                let (from, to) = (radii[i], radii[(i + 1) % count]);
-                let (a, b) = (i as f32 * step, (i + 1) as f32 * step);
-                path.cubic_to(
-                    polar(a + arm, from / arm.cos()),
-                    polar(b - arm, to / arm.cos()),
-                    polar(b, to),
-                );
-            }
-            (
-                "blob",
-                vec![Shape::path(path.close(), FillRule::NonZero).unwrap()],
-                vec![half, radii[0]],
-            )
-        }
-        11 => {
-            let at = |u: f32, v: f32| [x + u * w, y + v * h];
-            let mut path = Path::new();
-            path.move_to(at(0.5, 1.0))
-                .cubic_to(at(0.0, 0.65), at(-0.1, 0.3), at(0.06, 0.14))
-                .cubic_to(at(0.2, -0.04), at(0.42, 0.02), at(0.5, 0.22))
-                .cubic_to(at(0.58, 0.02), at(0.8, -0.04), at(0.94, 0.14))
-                .cubic_to(at(1.1, 0.3), at(1.0, 0.65), at(0.5, 1.0));
-            (
-                "heart",
-                vec![Shape::path(&path, FillRule::NonZero).unwrap()],
-                vec![half, half / 2.0],
-            )
-        }
-        12 => {
-            let corner = if random.chance(0.5) {
-                0.0
-            } else {
-                random.between(0.0, half)
-            };
-            let card = Shape::rounded_rect(x, y, w, h, corner).unwrap();
-            (
-                "tilted rectangle",
-                vec![turned(card, random)],
-                vec![half, corner],
-            )
-        }
-        13 => (
-            "ellipse",
-            vec![Shape::ellipse(center, [w / 2.0, h / 2.0]).unwrap()],
-            vec![w / 2.0, h / 2.0],
-        ),
-        14 => {
-            // Cards in columns and rows: apart, abutting or overlapping.
-            let (columns, rows) = (1 + random.below(4), 2 + random.below(4));
-            let pitch = [side / (columns as f32 + 0.5), side / (rows as f32 + 0.5)].map(f32::floor);
-            let gap = random.pick(&[0.0, 0.0, 0.5, 1.0, 2.0, 3.0, 4.0, 6.0, 9.0, -1.0, -3.0]);
-            let corner = random.pick(&[0.0, 0.0, 2.0, 4.0, 7.5]);
-            let offset = [phase(random), phase(random)];
-            let card = |i: usize| {
-                let [x, y] = [
-                    (i % columns) as f32 * pitch[0] + 3.0 + offset[0],
-                    (i / columns) as f32 * pitch[1] + 3.0 + offset[1],
-                ];
-                Shape::rounded_rect(x, y, pitch[0] - gap, pitch[1] - gap, corner).unwrap()
-            };
-            let name = match gap {
-                ..0.0 => "overlapping cards",
-                0.0 => "abutting cards",
-                _ => "cards apart",
-            };
-            (
-                name,
-                (0..columns * rows).map(card).collect(),
-                vec![
-                    gap.abs() / 2.0,
-                    gap.abs() / 1.85,
-                    gap.abs(),
-                    corner,
-                    pitch[1] / 2.0,
-                ],
-            )
-        }
-        _ => {
-            let mut several = Vec::new();
-            for _ in 0..2 + random.below(4) {
-                let at = [
-                    random.between(0.1, 0.9) * side,
-                    random.between(0.1, 0.9) * side,
-                ];
-                let size = side * random.between(0.03, 0.2);
-                several.push(match random.below(3) {
-                    0 => Shape::circle(at, size).unwrap(),
-                    1 => Shape::rect(at[0], at[1], size, size).unwrap(),
-                    _ => Shape::polygon(
-                        &[[at, [at[0] + size, at[1] + 1.0], [at[0] + 2.0, at[1] + size]]],
-                        FillRule::NonZero,
-                    )
-                    .unwrap(),
-                });
-            }
-            ("several shapes", several, vec![side / 20.0])
-        }
-    }
-}
-
-/// The penumbra radius in pixels, special ones first.
-fn radius(random: &mut Random, lengths: &[f32]) -> f32 {
-    const SPECIAL: [f32; 20] = [
-        0.0, 0.0, 0.01, 0.1, 0.3, 0.499, 0.5, 0.7, 0.9999, 1.0, 1.1, 1.5, 2.0, 2.5, 2.999, 3.0,
-        3.0, 3.001, 100.0, 200.0,
-    ];
-    match random.below(10) {
-        0..4 => random.pick(&SPECIAL),
-        4..6 => random.pick(lengths).min(200.0),
-        6 => (random.pick(lengths) * random.between(0.97, 1.03)).min(200.0),
-        7 => random.between(0.0, 3.0),
-        _ => 3.0 * random.between(0.0, 6.06).exp2(),
-    }
-}
-
-fn case(index: usize) -> Case {
-    let mut random = Random::new(index as u64);
-    let mut side = 64.0 + (random.below(13) * 8) as f32;
-    let (name, mut shapes, lengths) = shapes(&mut random, side);
-    let radius = radius(&mut random, &lengths);
-    if radius < 3.0 {
-        // Here averages make `exact` slow.
-        side = side.min(96.0);
-    }
-    let per_unit = random.pick(&[1.0, 1.0, 1.0, 1.0, 2.0, 0.5]);
-    if per_unit != 1.0 {
-        for shape in &mut shapes {
-            *shape = shape
-                .transformed([1.0 / per_unit, 0.0, 0.0, 1.0 / per_unit, 0.0, 0.0])
-                .unwrap();
-        }
-    }
-    let offset = random.pick(&[[0.0, 0.0], [3.25, -2.5], [0.3, 0.7]]);
-    let light = Light::directional(offset, radius / per_unit).unwrap();
-    let shadow = light.cast_all(&shapes, 1.0, 0.0).unwrap();
-    let grid = Grid::new([0.0, 0.0], [side as u32, side as u32], per_unit).unwrap();
-    Case {
-        name,
-        shapes,
-        radius,
-        light,
-        shadow,
-        grid,
-    }
-}
-
-fn densities(
-    shadow: &Shadow,
-    grid: &Grid,
-    options: &PixelOptions<'_>,
-    scratch: &mut Scratch,
-) -> Vec<f32> {
-    let mut densities = vec![-1.0; (grid.width() * grid.height()) as usize];
-    shadow
-        .fill_f32(grid, &mut densities, options, scratch)
-        .unwrap();
-    densities
-}
-
-/// The worst of cases by what they are.
-#[derive(Default)]
-struct Summary {
-    worst: BTreeMap<String, (f32, f32, String)>,
-    failures: Vec<String>,
-}
-
-impl Summary {
-    fn add(&mut self, what: String, error: f32, allowed: f32, label: &str) {
-        if error > allowed {
-            self.failures.push(format!(
-                "{what}: {error:.3} levels, {allowed} allowed: {label}"
-            ));
-        }
-        let worst = self.worst.entry(what).or_default();
-        if error / allowed >= worst.0 {
-            *worst = (error / allowed, error, label.to_owned());
-        }
-    }
-
-    fn finish(self) {
-        for (what, (_, error, label)) in &self.worst {
-            println!("{what:32} {error:.3} levels, {label}");
-        }
-        assert!(
-            self.failures.is_empty(),
-            "{} failures:\n{}",
-            self.failures.len(),
-            self.failures.join("\n")
-        );
-    }
-}
-
-fn worst_of(a: &[f32], b: &[f32]) -> f32 {
-    a.iter()
-        .zip(b)
-        .map(|(a, b)| (a - b).abs() * 255.0)
-        .fold(0.0, f32::max)
-}
 
 /// The least error below r = 3 px that is promised of averages.
 const AVERAGED: f32 = 0.8;
 
+/// Over 1000 cases, or as many as `PENUMBRAL_CASES` says from seed `PENUMBRAL_SEED` on:
+///
+///     PENUMBRAL_SEED=40000 PENUMBRAL_CASES=4000 cargo test --release --all-features --test pixels every_method -- --nocapture
 #[test]
 fn every_method_keeps_its_tolerance() {
     let (mut scratch, mut summary) = (Scratch::new(), Summary::default());
-    for index in 0..1000 {
+    let (seed, count) = (
+        setting("PENUMBRAL_SEED", 0),
+        setting("PENUMBRAL_CASES", 1000),
+    );
+    println!("{count} cases from seed {seed} on");
+    for index in seed..seed + count {
         let case = case(index);
         let label = case.label(index);
         let mut draw = |method, tolerance| {
@@ -591,6 +199,53 @@ fn corners_nearly_as_round_as_the_disc_keep_their_tolerance() {
     summary.finish();
 }
 
+/// Pills and ellipses a little longer than wide, seen by a disc as large as they: about their middle the density has tips that rows
+/// some pixels apart may miss.
+#[test]
+fn tips_between_rows_keep_their_tolerance() {
+    let (mut scratch, mut summary) = (Scratch::new(), Summary::default());
+    // The third was wrong by 2.2 levels, the fourth by 1.4, where only the nearest two rows told where they are too far apart.
+    let found = [
+        ([9.0, 15.0, 53.071_51, 56.0], 26.535_755, false),
+        ([29.025_383, 15.5, 44.941_19, 39.633_602], 22.308_674, false),
+        (
+            [28.396_076, 47.295_483, 49.450_806, 53.0],
+            24.725_403,
+            false,
+        ),
+        ([10.5, 15.816_267, 44.368_862, 46.988_716], 22.184_431, true),
+    ];
+    let round = [22.1_f32, 24.3, 26.5, 31.0].into_iter().flat_map(|half| {
+        (0_u8..8).flat_map(move |phase| {
+            [0.0_f32, 0.4, 1.1, 3.7].into_iter().map(move |longer| {
+                let place = 8.0 + f32::from(phase) / 4.0;
+                (
+                    [8.0, place, 2.0 * half, 2.0 * half + longer],
+                    half,
+                    phase % 2 == 0,
+                )
+            })
+        })
+    });
+    for ([x, y, w, h], radius, is_ellipse) in found.into_iter().chain(round) {
+        let center = [x + w / 2.0, y + h / 2.0];
+        let shape = if is_ellipse {
+            Shape::ellipse(center, [w / 2.0, h / 2.0])
+        } else {
+            Shape::rounded_rect(x, y, w, h, 1e3)
+        };
+        let light = Light::directional([0.0, 0.0], radius).unwrap();
+        let shadow = light.cast(&shape.unwrap(), 1.0, 0.0).unwrap();
+        let corner = center.map(|v| v.floor() - 8.0);
+        let grid = Grid::new(corner, [16, 16], 1.0).unwrap();
+        let [got, exact] = [Method::Grid, Method::Exact]
+            .map(|method| densities(&shadow, &grid, &by(Some(method)), &mut scratch));
+        let label = format!("[{x}, {y}, {w}, {h}] at r {radius}, ellipse {is_ellipse}");
+        summary.add("tips".to_owned(), worst_of(&got, &exact), 1.0, &label);
+    }
+    summary.finish();
+}
+
 /// The methods that are to keep a tolerance on whatever they are given.
 const FORCED: [Method; 3] = [Method::Direct, Method::Grid, Method::NinePatch];
 
@@ -602,23 +257,15 @@ const METHODS: [Option<Method>; 4] = [
     Some(Method::NinePatch),
 ];
 
-fn by(method: Option<Method>) -> PixelOptions<'static> {
-    PixelOptions {
-        method,
-        ..PixelOptions::default()
-    }
-}
-
-fn bits(densities: &[f32]) -> Vec<u32> {
-    densities.iter().map(|density| density.to_bits()).collect()
-}
-
 /// Shapes whose outlines are computed from their coordinates: moved, the digits of these end elsewhere.
-const COMPUTED: [&str; 6] = [
+const COMPUTED: [&str; 9] = [
     "abutting cards",
     "blob",
     "ellipse",
+    "elliptical corners",
     "heart",
+    "path of every kind",
+    "polygons of every kind",
     "self-crossing polygon",
     "several shapes",
 ];
@@ -644,8 +291,14 @@ fn moved_by_whole_pixels_densities_keep_their_bits() {
                 let moved = densities(&shadow, &there, &by(method), &mut scratch);
                 if COMPUTED.contains(&case.name) {
                     let worst = worst_of(&still, &moved);
+                    // Many edges within reach, each with its own last digit.
+                    let allowed = if case.name == "path of every kind" {
+                        1e-3
+                    } else {
+                        1e-4
+                    };
                     assert!(
-                        worst < 1e-4,
+                        worst < allowed,
                         "{method:?}, {offset:?}: {worst} levels, {}",
                         case.label(index)
                     );

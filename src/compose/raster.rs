@@ -16,6 +16,7 @@ use crate::density::{self, Each, PixelOptions};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::hidden::Hidden;
+use crate::limits::Limits;
 use crate::scene::{Form, Scene, Surface};
 use crate::scratch::Scratch;
 use crate::shadow::Bounds;
@@ -27,6 +28,7 @@ use crate::tone::Color;
 /// its antialiased edge neither light nor dark shines through between the two.
 #[derive(Debug, Default)]
 pub struct Renderer {
+    limits: Limits,
     scratch: Scratch,
     /// For each pixel that is drawn the rank of the highest surface that hides all below: 0 is the ground, 1 the lowest surface.
     topmost: Vec<u32>,
@@ -59,6 +61,10 @@ struct Window {
     grid: Grid,
 }
 
+/// A band of rows has about so many pixels: few enough to be drawn in some milliseconds a layer, so many that their beginnings
+/// do not count.
+const BAND: u32 = 1 << 20;
+
 impl Window {
     fn new(grid: &Grid, columns: Range<u32>, rows: Range<u32>) -> Self {
         Self {
@@ -76,10 +82,20 @@ impl Renderer {
         Self::default()
     }
 
+    /// One that refuses scenes over other limits.
+    #[must_use]
+    pub fn within(limits: Limits) -> Self {
+        Self {
+            limits,
+            ..Self::default()
+        }
+    }
+
     /// Draws the scene onto a pixmap of its picture's size, over whatever was there.
     ///
     /// # Errors
-    /// [`Error::BufferSize`] when the pixmap has another size than [`Scene::grid`].
+    /// [`Error::BufferSize`] when the pixmap has another size than [`Scene::grid`], [`Error::TooMany`] when the scene is over
+    /// the renderer's [`Limits`].
     ///
     /// ```
     /// use penumbral::{Light, Renderer, Scene, Shape, Surface};
@@ -103,11 +119,41 @@ impl Renderer {
         &mut self,
         scene: &Scene,
         pixmap: &mut Pixmap,
-        progress: impl FnMut(usize, usize),
+        mut progress: impl FnMut(usize, usize),
+    ) -> Result<()> {
+        self.render_while(scene, pixmap, |done, layers| {
+            progress(done, layers);
+            true
+        })
+    }
+
+    /// As [`Renderer::render`], as long as `goes_on` says so: it is asked after each layer, of which each band of some rows has its
+    /// own, with the number of layers drawn and of all. A picture that it stops is not whole.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`], and [`Error::Stopped`].
+    pub fn render_while(
+        &mut self,
+        scene: &Scene,
+        pixmap: &mut Pixmap,
+        mut goes_on: impl FnMut(usize, usize) -> bool,
     ) -> Result<()> {
         let grid = scene.grid()?;
-        let window = Window::new(&grid, 0..grid.width(), 0..grid.height());
-        self.draw(scene, &Stage::new(scene)?, &window, pixmap, progress)
+        let stage = Stage::new(scene)?;
+        let rows = (BAND / grid.width()).max(1);
+        let bands = grid.height().div_ceil(rows) as usize;
+        for (band, first) in (0..grid.height()).step_by(rows as usize).enumerate() {
+            let end = grid.height().min(first + rows);
+            let window = Window::new(&grid, 0..grid.width(), first..end);
+            self.draw(scene, &stage, &window, pixmap, |done, layers| {
+                if goes_on(band * layers + done, bands * layers) {
+                    Ok(())
+                } else {
+                    Err(Error::Stopped)
+                }
+            })?;
+        }
+        Ok(())
     }
 
     /// Draws the pixels that meet boxes (scene units), as [`Renderer::render`] draws them bit for bit, and leaves all others as they
@@ -151,7 +197,7 @@ impl Renderer {
             });
             if !columns.is_empty() && !rows.is_empty() {
                 let window = Window::new(&grid, columns, rows);
-                self.draw(scene, &stage, &window, pixmap, |_, _| {})?;
+                self.draw(scene, &stage, &window, pixmap, |_, _| Ok(()))?;
             }
         }
         Ok(())
@@ -163,8 +209,9 @@ impl Renderer {
         stage: &Stage<'_>,
         window: &Window,
         pixmap: &mut Pixmap,
-        mut progress: impl FnMut(usize, usize),
+        mut progress: impl FnMut(usize, usize) -> Result<()>,
     ) -> Result<()> {
+        self.limits.check(scene)?;
         let grid = scene.grid()?;
         if (pixmap.width(), pixmap.height()) != (grid.width(), grid.height()) {
             return Err(Error::BufferSize {
@@ -188,14 +235,14 @@ impl Renderer {
         if self.is_visible(&ground, window) {
             self.draw_layer(scene, stage, &ground, window, pixmap)?;
         }
-        progress(1, layers);
+        progress(1, layers)?;
         for (index, &surface) in stage.order.iter().enumerate() {
             let layer = layer(scene, surface, index as u32 + 1, window)?;
             if let Some(layer) = layer.filter(|layer| self.is_visible(layer, window)) {
                 self.find_cover(surface, &layer);
                 self.draw_layer(scene, stage, &layer, window, pixmap)?;
             }
-            progress(index + 2, layers);
+            progress(index + 2, layers)?;
         }
         Ok(())
     }

@@ -32,12 +32,14 @@ use crate::grid::Grid;
 use crate::outline::{self, Edge};
 use crate::scratch::Scratch;
 
-/// Rows of the lattice that are kept: the four that a pixel is interpolated from, and two more on both sides to foretell
+/// Rows of the lattice that are kept: the four that a pixel is interpolated from, and three more on both sides to foretell
 /// them from.
-const RING: i64 = 8;
+const RING: i64 = 10;
 
-/// How far a row may be from what its neighbours at twice the distance foretell, over the tolerance: at the tip of a cone that
-/// is twice the error between rows.
+/// How far any of the four rows that a pixel is interpolated from may be from what its neighbours at twice the distance
+/// foretell, over the tolerance. The two nearest do not tell all: at a tip halfway between them the error is 1.5 times what
+/// either is surprised by, and more where two tips meet. Of 30,000 cells about the tips of pills, 11 passed the tolerance by
+/// up to 0.8 of it where only the two were asked; of all four none passed 0.9.
 const LIMIT: f64 = 0.7;
 
 /// The same where the density is about 0 or 1. At the penumbra's ends it is 2.8 times the error between rows.
@@ -199,7 +201,7 @@ pub(crate) fn fill<S: Simd>(
         }
         let place = (line as f64 + frame.phase.y + 0.5) / pitch;
         let knot = place.floor() as i64;
-        weaver.weave_to(simd, knot - 3, knot + 4);
+        weaver.weave_to(simd, knot - 4, knot + 5);
         if cell != Some(knot) {
             weaver.find_coarse(simd, knot, cell == Some(knot - 1));
             cell = Some(knot);
@@ -462,16 +464,17 @@ impl Weaver<'_> {
     /// time it was the row above.
     #[inline(always)]
     fn find_coarse<S: Simd>(&mut self, simd: S, row: i64, went_on: bool) {
-        if !went_on {
+        let new = if went_on { row + 2 } else { row - 1 };
+        for row in new..=row + 2 {
             self.surprise(simd, row);
         }
-        self.surprise(simd, row + 1);
         let GridScratch { ring, coarse, .. } = &mut *self.kept;
-        let at = |row: i64| &ring[row.rem_euclid(RING) as usize].surprises;
+        let at = |offset: i64| &ring[(row + offset).rem_euclid(RING) as usize].surprises;
         coarse.clear();
         let near = self.near;
-        for (block, (above, below)) in at(row).iter().zip(at(row + 1)).enumerate() {
-            let bits = above | below;
+        let outer = at(-1).iter().zip(at(2));
+        for (block, ((a, b), (c, d))) in at(0).iter().zip(at(1)).zip(outer).enumerate() {
+            let bits = a | b | c | d;
             if bits == 0 {
                 continue;
             }

@@ -8,13 +8,11 @@ use serde_json::value::RawValue;
 use self::surface::SurfaceFields;
 use super::group::MAX_DEPTH;
 use super::{Group, Overlap, Scene, Surface};
-use crate::error::{Error, MAX_SCENE_LENGTH, Result};
+use crate::error::{Error, Result};
 use crate::image::Image;
 use crate::light::Light;
+use crate::limits::{Limits, at_most};
 use crate::tone::{Blending, Color, Tone};
-
-/// A scene may not have more surfaces than this.
-const MAX_SURFACES: usize = 1 << 16;
 
 /// A field that is there has a value: `null` would be a silent default.
 fn some<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
@@ -168,11 +166,21 @@ impl Scene {
         text: &str,
         images: &mut dyn FnMut(&str) -> core::result::Result<Image, String>,
     ) -> Result<Self> {
+        Self::from_json_within(text, &Limits::default(), images)
+    }
+
+    /// As [`Scene::from_json_with_images`], with other limits.
+    ///
+    /// # Errors
+    /// As [`Scene::from_json_with_images`].
+    pub fn from_json_within(
+        text: &str,
+        limits: &Limits,
+        images: &mut dyn FnMut(&str) -> core::result::Result<Image, String>,
+    ) -> Result<Self> {
         let whole = Part { text, part: text };
-        if text.len() > MAX_SCENE_LENGTH {
-            let reason = format!("{} bytes: at most {MAX_SCENE_LENGTH} are read", text.len());
-            return Err(whole.refuse("scene", &reason));
-        }
+        at_most("bytes", text.len(), limits.scene_length)
+            .map_err(|error| whole.refuse("scene", &error))?;
         let fields: SceneFields<'_> = whole.read_object("scene")?;
         let part = |raw: &'_ RawValue| Part {
             text,
@@ -246,9 +254,15 @@ impl Scene {
                 .push_light(built, key)
                 .map_err(|error| light.refuse(&field, &error))?;
         }
+        limits
+            .check(&scene)
+            .and_then(|()| at_most("surfaces", fields.surfaces.len(), limits.surfaces))
+            .map_err(|error| whole.refuse("scene", &error))?;
         let mut members = Members {
             text,
+            limits,
             count: 0,
+            vertices: 0,
             images,
         };
         for (index, raw) in fields.surfaces.into_iter().enumerate() {
@@ -266,8 +280,10 @@ impl Scene {
 /// Reads surfaces and groups of a scene.
 struct Members<'a, 'i> {
     text: &'a str,
-    /// How many there were.
+    limits: &'i Limits,
+    /// How many there were, and the vertices of all.
     count: usize,
+    vertices: usize,
     images: &'i mut Images<'i>,
 }
 
@@ -279,9 +295,8 @@ enum Member {
 impl<'a> Members<'a, '_> {
     fn read(&mut self, part: Part<'a>, field: &str, depth: usize) -> Result<Member> {
         self.count += 1;
-        if self.count > MAX_SURFACES {
-            return Err(part.refuse(field, &format!("at most {MAX_SURFACES} surfaces are read")));
-        }
+        at_most("surfaces", self.count, self.limits.surfaces)
+            .map_err(|error| part.refuse(field, &error))?;
         if depth > MAX_DEPTH {
             return Err(part.refuse(field, &format!("groups are read {MAX_DEPTH} deep")));
         }
@@ -289,10 +304,13 @@ impl<'a> Members<'a, '_> {
             && part.read::<MaybeGroup>(field)?.group.is_some();
         if !is_group {
             let fields: SurfaceFields = part.read_object(field)?;
-            let built = fields.build(self.images);
-            return built
-                .map(Member::Surface)
-                .map_err(|reason| part.refuse(field, &reason));
+            let built = fields
+                .build(self.images)
+                .map_err(|reason| part.refuse(field, &reason))?;
+            self.vertices += built.shape().vertices();
+            at_most("vertices", self.vertices, self.limits.vertices)
+                .map_err(|error| part.refuse(field, &error))?;
+            return Ok(Member::Surface(built));
         }
         let fields: GroupFields<'a> = part.read_object(field)?;
         let inner = |raw: &RawValue| Part {

@@ -1,0 +1,193 @@
+//! The same bits on every machine, by hashes of densities, masks, meshes and pictures.
+//!
+//! `tests/sameness.sh` runs this for other processors too. Where a change means to change bits, the message has the new table.
+
+#![expect(clippy::unwrap_used, reason = "a case that is refused fails the test")]
+
+#[expect(dead_code, reason = "other tests take more of it")]
+mod common;
+
+use common::{Case, by, case, densities};
+use penumbral::plan::Method;
+use penumbral::{Color, Grid, NinePatch, Paint, PixelOptions, Renderer, Scene, Scratch, Tolerance};
+use tiny_skia::Pixmap;
+
+/// The hash of each group.
+const GOLDEN: [(&str, u64); 11] = [
+    ("exact", 0x8255_8d30_39d1_e922),
+    ("auto", 0x5f25_7eaa_d25f_c220),
+    ("direct", 0x36e0_c059_d6d3_8182),
+    ("grid", 0xd457_82e7_4968_f270),
+    ("nine-patch", 0x62dd_dc8a_5fd1_99f0),
+    ("points", 0x9125_5ccf_d94b_daa0),
+    ("dithered paint", 0xc5ea_bf1c_8c70_bdea),
+    ("masks", 0xfad7_7c0a_a8c7_f732),
+    ("meshes", 0xb66c_b07f_4b31_89d0),
+    ("pictures", 0x1360_7cbb_32c8_093b),
+    ("svg", 0x0072_e5cc_7d03_d5a9),
+];
+
+/// FNV-1a of 64 bits (Fowler, Noll & Vo 1991).
+struct Hash(u64);
+
+impl Hash {
+    fn new() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+
+    fn bytes(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+    }
+
+    fn floats(&mut self, floats: &[f32]) {
+        for float in floats {
+            self.bytes(&float.to_bits().to_le_bytes());
+        }
+    }
+}
+
+/// Cases of all kinds, each with a window of its pixels.
+fn cases() -> Vec<(Case, Grid)> {
+    let window = |case: &Case| {
+        let per_unit = case.grid.pixels_per_unit() as f32;
+        let size = if case.radius < 3.0 { [16, 8] } else { [48, 12] };
+        let first = case.grid.width() as f32 / 4.0;
+        Grid::new([first / per_unit; 2], size, per_unit).unwrap()
+    };
+    let cases = (700..820).map(case).map(|case| {
+        let grid = window(&case);
+        (case, grid)
+    });
+    cases.collect()
+}
+
+fn drawn(method: Option<Method>) -> Hash {
+    let (mut scratch, mut hash) = (Scratch::new(), Hash::new());
+    for (case, grid) in cases() {
+        hash.floats(&densities(&case.shadow, &grid, &by(method), &mut scratch));
+    }
+    hash
+}
+
+fn points() -> Hash {
+    let mut hash = Hash::new();
+    for (case, _) in cases() {
+        for point in [[20.25, 30.5], [33.0, 17.125], [8.5, 40.0]] {
+            hash.bytes(&case.shadow.density_at(point).to_bits().to_le_bytes());
+        }
+    }
+    hash
+}
+
+fn paint() -> Hash {
+    let (mut scratch, mut hash) = (Scratch::new(), Hash::new());
+    let paint = Paint::new(Color::rgb(30, 60, 90), 0.6).unwrap();
+    let options = PixelOptions {
+        dither: true,
+        ..PixelOptions::default()
+    };
+    for (case, grid) in cases() {
+        let mut pixels = vec![180; 4 * (grid.width() * grid.height()) as usize];
+        case.shadow
+            .blend_rgba8(&grid, &mut pixels, &paint, &options, &mut scratch)
+            .unwrap();
+        hash.bytes(&pixels);
+    }
+    hash
+}
+
+fn masks() -> Hash {
+    let (mut scratch, mut hash) = (Scratch::new(), Hash::new());
+    for (case, grid) in cases() {
+        let per_unit = grid.pixels_per_unit() as f32;
+        if let Some((key, _)) = case.shadow.key(per_unit, Tolerance::ONE_LEVEL) {
+            hash.bytes(NinePatch::draw(&key, &mut scratch).unwrap().mask());
+        }
+    }
+    hash
+}
+
+fn meshes() -> Hash {
+    let mut hash = Hash::new();
+    for (case, _) in cases().into_iter().step_by(8) {
+        let mesh = case.shadow.mesh(Tolerance::levels(8.0).unwrap());
+        for vertex in mesh.vertices() {
+            hash.floats(&vertex.position);
+            hash.floats(&[vertex.density]);
+        }
+        for index in mesh.indices() {
+            hash.bytes(&index.to_le_bytes());
+        }
+    }
+    hash
+}
+
+fn scenes() -> [Scene; 2] {
+    [
+        include_str!("../fixtures/scenes/dialog-over-list.json"),
+        include_str!("../fixtures/scenes/icon-set.json"),
+    ]
+    .map(|text| Scene::from_json(text).unwrap().with_scale(0.25).unwrap())
+}
+
+fn pictures() -> Hash {
+    let mut hash = Hash::new();
+    for scene in scenes() {
+        let grid = scene.grid().unwrap();
+        let mut pixmap = Pixmap::new(grid.width(), grid.height()).unwrap();
+        Renderer::new().render(&scene, &mut pixmap).unwrap();
+        hash.bytes(pixmap.data());
+    }
+    hash
+}
+
+fn svg() -> Hash {
+    let mut hash = Hash::new();
+    let [scene, _] = scenes();
+    hash.bytes(
+        scene
+            .to_svg(Tolerance::levels(16.0).unwrap())
+            .unwrap()
+            .as_bytes(),
+    );
+    hash
+}
+
+#[test]
+fn bits_are_those_of_every_other_machine() {
+    let hashes = [
+        drawn(Some(Method::Exact)),
+        drawn(None),
+        drawn(Some(Method::Direct)),
+        drawn(Some(Method::Grid)),
+        drawn(Some(Method::NinePatch)),
+        points(),
+        paint(),
+        masks(),
+        meshes(),
+        pictures(),
+        svg(),
+    ];
+    let table: Vec<_> = GOLDEN
+        .iter()
+        .zip(hashes)
+        .map(|((name, _), hash)| (*name, hash.0))
+        .collect();
+    let lines: Vec<String> = table
+        .iter()
+        .map(|(name, hash)| format!("    (\"{name}\", {hash:#018x}),"))
+        .collect();
+    println!(
+        "{}, {} bits, {} endian",
+        std::env::consts::ARCH,
+        usize::BITS,
+        if cfg!(target_endian = "big") {
+            "big"
+        } else {
+            "little"
+        }
+    );
+    assert!(table == GOLDEN, "the hashes are\n{}", lines.join("\n"));
+}
