@@ -122,6 +122,16 @@ impl ShadowMesh {
         self.complete
     }
 
+    /// Triangles that were made elsewhere, to be drawn as they are.
+    #[cfg(feature = "lab")]
+    pub(crate) fn of_triangles(vertices: Vec<MeshVertex>, indices: Vec<u32>) -> Self {
+        Self {
+            vertices,
+            indices,
+            ..Self::empty()
+        }
+    }
+
     fn empty() -> Self {
         Self {
             vertices: Vec::new(),
