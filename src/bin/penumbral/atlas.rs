@@ -1,6 +1,7 @@
 //! `atlas`: where each method fails, and by how much: its error against the parameter that breaks it.
 
 mod families;
+mod tilt;
 
 use std::fs;
 use std::path::Path;
@@ -11,7 +12,7 @@ use penumbral::plan::Method;
 use penumbral::{Scratch, Tolerance};
 use serde::Serialize;
 
-use self::families::{Case, Stress};
+use self::families::{Case, Stress, Trial};
 use crate::chart::plot::{self, Line, Mark, Panel};
 use crate::{Failure, output};
 
@@ -117,7 +118,26 @@ fn measure(
     slow: &mut Vec<(String, f64)>,
 ) -> Result<(), Failure> {
     let failed = |error: penumbral::Error| format!("{} {value}: {error}", stress.name);
-    let case = (stress.case)(value).map_err(failed)?;
+    let (case, techniques) = match stress.trial {
+        Trial::Shadow(case) => (case(value), lab::techniques()),
+        Trial::Setting(techniques) => (families::card(), techniques(value)),
+        Trial::Own(drawn) => {
+            let drawn = drawn(value).map_err(failed)?;
+            rows.extend(drawn.into_iter().map(|own| Row {
+                stress: stress.name,
+                parameter: stress.parameter,
+                value,
+                method: own.method.to_owned(),
+                setting: String::new(),
+                max_levels: own.errors.max_levels,
+                rms_levels: own.errors.rms_levels,
+                promised_levels: own.promised_levels,
+                family: own.family,
+            }));
+            return Ok(());
+        }
+    };
+    let case = case.map_err(failed)?;
     let mut scratch = Scratch::new();
     let pixels = case.grid.width() as usize * case.grid.height() as usize;
     let mut exact = vec![0.0; pixels];
@@ -125,10 +145,6 @@ fn measure(
     reference
         .draw(&case.shadow, &case.grid, &mut exact, &mut scratch)
         .map_err(failed)?;
-    let techniques = match stress.techniques {
-        Some(techniques) => techniques(value),
-        None => lab::techniques(),
-    };
     let mut densities = vec![0.0; pixels];
     for technique in techniques.map_err(failed)? {
         let is_slow = slow.iter().any(|(method, _)| method == technique.name());

@@ -3,7 +3,8 @@
 use std::f64::consts::TAU;
 
 use penumbral::lab::{
-    DepthMap, Kernel, MonteCarlo, PenumbraMap, Region, ScanLine, ShadowVolume, Technique, ZBuffer,
+    DepthMap, Errors, Family, Kernel, MonteCarlo, PenumbraMap, Region, ScanLine, ShadowVolume,
+    Technique, ZBuffer,
 };
 use penumbral::{FillRule, Grid, Light, Result, Shadow, Shape};
 
@@ -14,9 +15,25 @@ pub(super) struct Stress {
     pub(super) name: &'static str,
     pub(super) parameter: &'static str,
     pub(super) values: Vec<f64>,
-    pub(super) case: fn(f64) -> Result<Case>,
-    /// Other techniques than all, where the number is one of theirs.
-    pub(super) techniques: Option<fn(f64) -> Result<Techniques>>,
+    pub(super) trial: Trial,
+}
+
+/// What is drawn for a number.
+pub(super) enum Trial {
+    /// A shadow, by every technique.
+    Shadow(fn(f64) -> Result<Case>),
+    /// The card, by techniques of which the number is a setting.
+    Setting(fn(f64) -> Result<Techniques>),
+    /// What no technique draws.
+    Own(fn(f64) -> Result<Vec<Own>>),
+}
+
+/// A drawing that measured itself.
+pub(super) struct Own {
+    pub(super) method: &'static str,
+    pub(super) family: Family,
+    pub(super) errors: Errors,
+    pub(super) promised_levels: Option<f64>,
 }
 
 /// A shadow on its pixels.
@@ -30,8 +47,7 @@ pub(super) fn all() -> Vec<Stress> {
         name,
         parameter,
         values: values.to_vec(),
-        case,
-        techniques: None,
+        trial: Trial::Shadow(case),
     };
     vec![
         stress(
@@ -174,11 +190,16 @@ pub(super) fn all() -> Vec<Stress> {
             },
         ),
         Stress {
+            name: "tilt",
+            parameter: "degrees, to and past the light's plane (56)",
+            values: vec![1.0, 15.0, 30.0, 45.0, 52.0, 56.0, 60.0, 75.0, 85.0, 89.0],
+            trial: Trial::Own(super::tilt::measure),
+        },
+        Stress {
             name: "map resolution",
             parameter: "texels a pixel, at r = 9 px",
             values: vec![0.0625, 0.125, 0.25, 0.5, 1.0, 2.0],
-            case: |_| card(),
-            techniques: Some(|texels| {
+            trial: Trial::Setting(|texels| {
                 Ok(vec![
                     Box::new(PenumbraMap::new(Kernel::Box, Region::Circle, texels)?),
                     Box::new(DepthMap::new(texels, 64)?),
@@ -190,8 +211,7 @@ pub(super) fn all() -> Vec<Stress> {
             name: "samples",
             parameter: "points of the light, rays, or corners, at r = 9 px",
             values: vec![4.0, 16.0, 64.0, 144.0, 256.0, 1024.0],
-            case: |_| card(),
-            techniques: Some(|count| {
+            trial: Trial::Setting(|count| {
                 let count = count as u32;
                 let mut all: Techniques = vec![
                     Box::new(MonteCarlo::new(count)?),
@@ -207,7 +227,7 @@ pub(super) fn all() -> Vec<Stress> {
     ]
 }
 
-fn card() -> Result<Case> {
+pub(super) fn card() -> Result<Case> {
     flat(&Shape::rounded_rect(0.3, 0.6, 60.0, 40.0, 8.0)?, 9.0)
 }
 
