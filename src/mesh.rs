@@ -180,9 +180,10 @@ impl Shadow {
         }
         let step = min.abs().max(max.abs()).max_element() * f64::from(f32::EPSILON);
         if radius < step * NARROWEST {
-            // `f32` has no room for the rings of such a penumbra: a hard edge is half of density away from it.
+            // `f32` has no room for the rings of such a penumbra: a hard edge is half of density away from it, and at the
+            // tip of a sharp corner all.
             return ShadowMesh {
-                error_levels: 127.5,
+                error_levels: 255.0,
                 complete: false,
                 ..umbra::mesh(&outline.polygons(facet), center)
             };
