@@ -132,6 +132,8 @@ pub struct Costs {
     pub rounded: f64,
     /// A pixel within reach of an edge in double precision, for each edge.
     pub exact: f64,
+    /// The same where it is an average, over where it is not.
+    pub exact_average: f64,
 }
 
 /// One core with AVX-512.
@@ -143,7 +145,8 @@ pub const COSTS: Costs = Costs {
     sum: 0.7,
     sum_row: 50.0,
     rounded: 0.5,
-    exact: 90.0,
+    exact: 130.0,
+    exact_average: 25.0,
 };
 
 /// What there is to draw, in pixels.
@@ -190,7 +193,8 @@ impl Work {
             } else {
                 EXACT_SHARE
             },
-            cost_ns: COSTS.exact * (self.lines + self.arcs) * self.averages() + self.pixels,
+            cost_ns: COSTS.exact * (self.lines + self.arcs) * self.averages(COSTS.exact_average)
+                + self.pixels,
             why: "the finest averages over pixels",
         }
     }
@@ -213,7 +217,7 @@ impl Work {
                 CURVES * levels + direct::ROUNDING
             },
             cost_ns: COSTS.pixel * self.pixels
-                + (COSTS.line * self.lines + COSTS.arc * self.arcs) * self.averages(),
+                + (COSTS.line * self.lines + COSTS.arc * self.arcs) * self.averages(COSTS.average),
             why,
         }
     }
@@ -241,13 +245,9 @@ impl Work {
         }
     }
 
-    /// How much more a pixel costs for being an average.
-    fn averages(&self) -> f64 {
-        if self.is_averaged() {
-            COSTS.average
-        } else {
-            1.0
-        }
+    /// How much more a pixel costs for being an average, if it is one.
+    fn averages(&self, more: f64) -> f64 {
+        if self.is_averaged() { more } else { 1.0 }
     }
 }
 

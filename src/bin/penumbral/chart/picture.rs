@@ -75,7 +75,14 @@ impl Picture {
             let lines: Vec<Line> = all
                 .iter()
                 .filter(|series| series.name != "exact")
-                .map(|series| line(series, levels, false))
+                .map(|series| {
+                    // Of many settings only the best are worth a place.
+                    let mut line = line(series, levels, false);
+                    let best = front(std::slice::from_ref(&line));
+                    line.marks.retain(|mark| best.contains(&(mark.x, mark.y)));
+                    line.marks.sort_by(|a, b| a.x.total_cmp(&b.x));
+                    line
+                })
                 .collect();
             Panel {
                 y: format!("{what}, levels of 255"),
