@@ -9,7 +9,7 @@ mod cubic;
 pub(crate) mod direct;
 pub(crate) mod exact;
 mod field;
-mod frame;
+pub(crate) mod frame;
 pub(crate) mod grid;
 pub(crate) mod lines;
 pub(crate) mod nine_patch;
@@ -150,7 +150,7 @@ fn draw_part(
 }
 
 /// The share of the tolerance that lines in place of curves may take.
-const CURVES: f64 = 0.25;
+pub(crate) const CURVES: f64 = 0.25;
 
 /// Puts the parts of a row's `columns` that are seen into `seen`, in the frame's pixels.
 fn seen_columns(
@@ -178,6 +178,18 @@ fn seen_columns(
 /// the pixel's side, in the unit of the result.
 pub(crate) fn flatness(levels: f64, radius: f64, pixel: f64) -> f64 {
     levels / 255.0 * pixel.max(FRAC_PI_2 * radius)
+}
+
+/// The average of `density` over the square about a pixel's centre on which it depends at that penumbra radius, in pixels.
+#[cfg(feature = "lab")]
+pub(crate) fn square_average(radius: f64, density: impl Fn(glam::DVec2) -> f64) -> f64 {
+    let side = averaged_side(radius);
+    if side == 0.0 {
+        return density(glam::DVec2::ZERO);
+    }
+    quadrature::square(radius)
+        .map(|(offset, weight)| weight * density(offset * side))
+        .sum()
 }
 
 /// The side of the square about its centre over which a pixel's density is averaged, in pixels, for a penumbra radius

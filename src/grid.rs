@@ -126,6 +126,41 @@ impl Grid {
         }
     }
 
+    /// The same square in pixels a `factor` as large or small, in a buffer of its own.
+    #[cfg(feature = "lab")]
+    pub(crate) fn finer(&self, factor: f64) -> Result<Self> {
+        let side = |pixels: u32| (f64::from(pixels) * factor).ceil() as u64;
+        let (width, height) = (side(self.width), side(self.height));
+        if width * height > MAX_PIXELS {
+            return Err(Error::PictureSize { width, height });
+        }
+        Ok(Self {
+            corner: self.corner * factor,
+            width: width as u32,
+            height: height as u32,
+            pixels_per_unit: self.pixels_per_unit * factor,
+            stride: width as usize,
+        })
+    }
+
+    /// The grid and `margin` more pixels on every side, in a buffer of its own.
+    #[cfg(feature = "lab")]
+    pub(crate) fn grown(&self, margin: u32) -> Result<Self> {
+        let (width, height) = [self.width, self.height]
+            .map(|side| u64::from(side) + 2 * u64::from(margin))
+            .into();
+        if width * height > MAX_PIXELS {
+            return Err(Error::PictureSize { width, height });
+        }
+        Ok(Self {
+            corner: self.corner - f64::from(margin),
+            width: width as u32,
+            height: height as u32,
+            stride: width as usize,
+            ..*self
+        })
+    }
+
     /// The rows from `first` to before `end`, in the same buffer.
     #[cfg(feature = "rayon")]
     pub(crate) fn band(&self, first: u32, end: u32) -> Self {

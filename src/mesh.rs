@@ -134,6 +134,16 @@ impl ShadowMesh {
         self.complete
     }
 
+    /// Triangles that were made elsewhere, to be drawn as they are.
+    #[cfg(feature = "lab")]
+    pub(crate) fn of_triangles(vertices: Vec<MeshVertex>, indices: Vec<u32>) -> Self {
+        Self {
+            vertices,
+            indices,
+            ..Self::empty()
+        }
+    }
+
     fn empty() -> Self {
         Self {
             vertices: Vec::new(),
@@ -273,9 +283,10 @@ impl Shadow {
         }
         let step = min.abs().max(max.abs()).max_element() * f64::from(f32::EPSILON);
         if radius < step * NARROWEST {
-            // `f32` has no room for the rings of such a penumbra: a hard edge is half of density away from it.
+            // `f32` has no room for the rings of such a penumbra: a hard edge is half of density away from it, and at the
+            // tip of a sharp corner all.
             return ShadowMesh {
-                error_levels: 127.5,
+                error_levels: 255.0,
                 complete: false,
                 ..umbra::mesh(&outline.polygons(facet), center)
             };

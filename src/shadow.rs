@@ -18,6 +18,7 @@ use crate::grid::Grid;
 use crate::light::Projection;
 use crate::outline::{Edge, Fineness, Outline, Winding, resolve};
 use crate::paint::Paint;
+use crate::plan;
 use crate::scratch::Scratch;
 use crate::shape::{Cover, Shape};
 
@@ -392,8 +393,10 @@ impl Shadow {
     ) -> Result<()> {
         clear(grid, mask, 0)?;
         options.check(grid)?;
-        let layout = options.layout(grid);
-        density::draw(self, grid, options, scratch, &mut A8 { mask, layout });
+        if plan::skip(self, grid, options, Some(1.0)).is_none() {
+            let layout = options.layout(grid);
+            density::draw(self, grid, options, scratch, &mut A8 { mask, layout });
+        }
         Ok(())
     }
 
@@ -411,6 +414,9 @@ impl Shadow {
     ) -> Result<()> {
         clear(grid, densities, 0.0)?;
         options.check(grid)?;
+        if plan::skip(self, grid, options, None).is_some() {
+            return Ok(());
+        }
         let mut sink = Each {
             pixels: densities,
             stride: grid.stride(),
@@ -435,6 +441,9 @@ impl Shadow {
     ) -> Result<()> {
         grid.check_buffer(pixels.len() / 4)?;
         options.check(grid)?;
+        if plan::skip(self, grid, options, Some(paint.opacity())).is_some() {
+            return Ok(());
+        }
         let mut sink = Rgba8 {
             level: scratch.level(),
             pixels,

@@ -493,19 +493,27 @@ mod explain {
             "  umbra   x 75.00 to 225.00, y 87.50 to 112.50",
             "  bounds  x -25.00 to 325.00, y -12.50 to 212.50",
             "  method  nine-patch: ",
+            "  instead   exact: ",
+            "  instead   direct: ",
+            "  instead   grid: ",
+            "  takes     nine-patch: ",
             "surfaces[1], elevation 100",
             "  scale   1.2500",
             "  radius  50.000 units, 100.000 px",
             "  umbra   none",
             "  bounds  x 87.50 to 212.50, y 37.50 to 162.50",
             "  method  nine-patch: ",
+            "  instead   exact: ",
+            "  instead   direct: ",
+            "  instead   grid: ",
+            "  takes     nine-patch: ",
             "surfaces[2], elevation 0",
             "  no shadow on the ground",
         ];
         let text = folder.succeed("explain scene.json");
         assert_eq!(text.lines().count(), expected.len(), "{text}");
         for (line, expected) in text.lines().zip(expected) {
-            // Why a method was chosen is not the test's to word.
+            // Why a method was chosen, and what it would cost, is not the test's to word.
             assert!(
                 line == expected || expected.ends_with(": ") && line.starts_with(expected),
                 "{line:?}, not {expected:?}"

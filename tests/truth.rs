@@ -9,8 +9,10 @@ use std::fs::{self, File};
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-use penumbral::plan::Method;
-use penumbral::{DensityMap, Grid, Light, PixelOptions, Scene, Scratch, Shape};
+use penumbral::plan::{Method, Target, choose};
+use penumbral::{
+    DensityMap, FillRule, Grid, Light, PixelOptions, Scene, Scratch, Shape, Tolerance,
+};
 
 fn truth_scenes() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/truth");
@@ -208,4 +210,97 @@ fn pixels_per_unit_only_change_the_resolution() {
         mask
     };
     assert_eq!(draw(1.0), draw(2.0));
+}
+
+/// Numbers of chance, the same in every run (Steele, Lea & Flood 2014, `SplitMix`).
+struct Chance(u64);
+
+impl Chance {
+    fn between(&mut self, low: f32, high: f32) -> f32 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut bits = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        bits ^= bits >> 31;
+        low + (high - low) * ((bits >> 40) as f32 / (1_u64 << 24) as f32)
+    }
+
+    fn one_of<T: Copy>(&mut self, all: &[T]) -> T {
+        let index = self.between(0.0, all.len() as f32) as usize;
+        all[index.min(all.len() - 1)]
+    }
+
+    /// A card, a circle, a star or a blob of curves, some 60 units wide.
+    fn shape(&mut self) -> Shape {
+        let (x, y) = (self.between(5.0, 20.0), self.between(5.0, 20.0));
+        let (w, h) = (self.between(2.0, 70.0), self.between(2.0, 60.0));
+        let kind = self.one_of(&[0, 1, 2, 3]);
+        match kind {
+            0 => Shape::rounded_rect(x, y, w, h, [0; 4].map(|_| self.between(0.0, 20.0))).unwrap(),
+            1 => {
+                Shape::ellipse([x + 25.0, y + 25.0], [w / 2.0, self.one_of(&[w, h]) / 2.0]).unwrap()
+            }
+            2 => {
+                let points = self.between(3.0, 40.0) as u16;
+                let vertex = |i: u16, radius: f32| {
+                    let angle = f32::from(i) * std::f32::consts::PI / f32::from(points);
+                    [40.0 + radius * angle.cos(), 40.0 + radius * angle.sin()]
+                };
+                let ring: Vec<[f32; 2]> = (0..2 * points)
+                    .map(|i| vertex(i, self.between(10.0, 35.0)))
+                    .collect();
+                Shape::polygon(&[ring], FillRule::EvenOdd).unwrap()
+            }
+            _ => {
+                let mut blob = penumbral::Path::new();
+                blob.move_to([x, y]);
+                for _ in 0..3 {
+                    let mut point = || [self.between(5.0, 75.0), self.between(5.0, 75.0)];
+                    let (a, b, c) = (point(), point(), point());
+                    blob.cubic_to(a, b, c);
+                }
+                Shape::path(&blob, FillRule::NonZero).unwrap()
+            }
+        }
+    }
+}
+
+/// As many scenes of chance as `PENUMBRAL_SCENES` says, or 120:
+/// `PENUMBRAL_SCENES=1000 cargo test --release --all-features --test truth random -- --nocapture`.
+#[test]
+fn the_plans_choice_keeps_the_tolerance_on_random_shadows() {
+    let scenes = std::env::var("PENUMBRAL_SCENES").map_or(120, |count| count.parse().unwrap());
+    let mut chance = Chance(2026);
+    let grid = Grid::new([0.0, 0.0], [80, 80], 1.0).unwrap();
+    let (mut scratch, mut exact, mut got) = (Scratch::new(), vec![0.0; 6400], vec![0.0; 6400]);
+    let (mut closest, mut where_) = (0.0_f64, String::new());
+    for scene in 0..scenes {
+        let shape = chance.shape();
+        let radius =
+            chance.one_of(&[0.02, 0.1, 0.3, 1.0, 3.0, 10.0, 40.0]) * chance.between(0.5, 2.0);
+        let levels = chance.one_of(&[0.5_f32, 1.0, 2.0, 4.0]);
+        let light = Light::directional([0.0, 0.0], radius).unwrap();
+        let shadow = light.cast(&shape, 1.0, 0.0).unwrap();
+        let mut draw = |method, densities: &mut [f32]| {
+            let options = PixelOptions {
+                method,
+                tolerance: Tolerance::levels(levels).unwrap(),
+                ..PixelOptions::default()
+            };
+            shadow
+                .fill_f32(&grid, densities, &options, &mut scratch)
+                .unwrap();
+        };
+        draw(Some(Method::Exact), &mut exact);
+        draw(None, &mut got);
+        let error = |(a, b): (&f32, &f32)| f64::from((a - b).abs()) * 255.0;
+        let worst = got.iter().zip(&exact).map(error).fold(0.0, f64::max);
+        let target = Target::Pixels { per_unit: 1.0 };
+        let chosen = choose(&shadow, Tolerance::levels(levels).unwrap(), target).method;
+        let words = format!("scene {scene}: {chosen}, r {radius}, {worst} of {levels} levels");
+        assert!(worst <= f64::from(levels), "{words}");
+        if worst / f64::from(levels) > closest {
+            (closest, where_) = (worst / f64::from(levels), words);
+        }
+    }
+    println!("{scenes} scenes; nearest to its tolerance: {where_}");
 }

@@ -95,3 +95,6 @@ enum Computed {
 
 /// The largest error of averages over pixels, in levels.
 pub(crate) const AVERAGED: f64 = 0.8;
+
+/// The largest error from rounding and from polynomials, in levels.
+pub(crate) const ROUNDING: f64 = 0.05;

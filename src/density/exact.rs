@@ -16,6 +16,9 @@ use crate::outline::{Edge, clip_to_box};
 use crate::scratch::Scratch;
 use crate::shadow::Shadow;
 
+/// The largest error of averages over pixels, in levels.
+pub(crate) const AVERAGED: f64 = 0.12;
+
 /// The side of the smallest tiles, in pixels: smaller ones cut more than they save.
 const LEAF: i64 = 8;
 

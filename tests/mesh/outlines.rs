@@ -299,3 +299,24 @@ fn slivers_along_a_ring_do_not_use_up_the_rounds() {
     let light = Light::directional([0.0, 0.0], 10.0).unwrap();
     keeps("comb", &light.cast(&comb, 1.0, 0.0).unwrap(), 2.0);
 }
+
+/// Found by `penumbral atlas`: so far from the origin `f32` steps are as wide as the penumbra's rings, and the mesh is a hard edge.
+#[test]
+fn a_penumbra_too_narrow_for_its_coordinates_states_what_corners_lose() {
+    let light = Light::directional([0.0, 0.0], 9.0).unwrap();
+    let card = Shape::rounded_rect(4e6, -4e6, 60.0, 40.0, 8.0).unwrap();
+    let shadow = light.cast(&card, 1.0, 0.0).unwrap();
+    let mesh = shadow.mesh(levels(1.0));
+    let grid = Grid::new([4e6 - 9.0, -4e6 - 9.0], [80, 60], 1.0).unwrap();
+    let mut densities = vec![0.0; 80 * 60];
+    mesh.rasterize(&grid, &mut densities).unwrap();
+    let error = |(i, density): (usize, &f32)| {
+        let (x, y) = ((i % 80) as f32, (i / 80) as f32);
+        let exact = shadow.density_at([4e6 - 8.5 + x, -4e6 - 8.5 + y]);
+        (f64::from(*density) - exact).abs() * 255.0
+    };
+    let worst = densities.iter().enumerate().map(error).fold(0.0, f64::max);
+    println!("{worst} levels, stated {}", mesh.error_levels());
+    assert!(!mesh.is_complete());
+    assert!(worst <= mesh.error_levels(), "{worst}");
+}

@@ -3,13 +3,14 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use penumbral::plan::{Target, choose};
-use penumbral::{Bounds, Tolerance};
+use penumbral::plan::{self, Target, candidates, choose};
+use penumbral::{Bounds, PixelOptions, Tolerance};
 
 use crate::{Failure, output, read_scene};
 
 pub(crate) fn run(path: &Path) -> Result<(), Failure> {
     let scene = read_scene(path)?;
+    let grid = scene.grid().map_err(|error| error.to_string())?;
     let mut text = String::new();
     // Writing to a string cannot fail.
     for (index, surface) in scene.surfaces().iter().enumerate() {
@@ -49,8 +50,30 @@ pub(crate) fn run(path: &Path) -> Result<(), Failure> {
         let pixels = Target::Pixels {
             per_unit: f64::from(scene.scale()),
         };
-        let choice = choose(&shadow, Tolerance::default(), pixels);
+        let opacity = Some(scene.tone().key() * surface.weight());
+        if let Some(skip) = plan::skip(&shadow, &grid, &PixelOptions::default(), opacity) {
+            let _ = writeln!(text, "  skipped {skip}");
+            continue;
+        }
+        let tolerance = Tolerance::default();
+        let choice = choose(&shadow, tolerance, pixels);
         let _ = writeln!(text, "  method  {}: {}", choice.method, choice.why);
+        for candidate in candidates(&shadow, tolerance, pixels).into_iter().flatten() {
+            let mark = if candidate.method == choice.method {
+                "takes"
+            } else if candidate.error_levels > tolerance.as_levels() {
+                "too wrong"
+            } else {
+                "instead"
+            };
+            let _ = writeln!(
+                text,
+                "  {mark:9} {}: about {:.3} ms, within {:.2} levels",
+                candidate.method,
+                candidate.cost_ns / 1e6,
+                candidate.error_levels
+            );
+        }
     }
     output::print(&text)
 }

@@ -1,5 +1,9 @@
 //! `penumbral`: pictures, densities, meshes and explanations of scene files.
 
+#[cfg(feature = "lab")]
+mod atlas;
+#[cfg(feature = "lab")]
+mod chart;
 mod density;
 mod explain;
 mod mesh;
@@ -73,6 +77,29 @@ enum Command {
         /// The scene file, JSON.
         scene: PathBuf,
     },
+    /// Find where each method fails, and by how much: pictures and tables.
+    #[cfg(feature = "lab")]
+    Atlas {
+        /// The folder that all of it is written to.
+        #[arg(short)]
+        output: PathBuf,
+    },
+    /// Measure every method's time and error, and chart one against the other: pictures, tables and a page.
+    #[cfg(feature = "lab")]
+    Chart {
+        /// The folder that all of it is written to.
+        #[arg(short)]
+        output: PathBuf,
+        /// A folder of scenes.
+        #[arg(long, default_value = "fixtures/truth")]
+        scenes: PathBuf,
+        /// What `benches/peers --json` wrote; else `peers.json` of the output folder, if there is one.
+        #[arg(long)]
+        peers: Option<PathBuf>,
+        /// Every method at one setting, on a few scenes: under a minute.
+        #[arg(long)]
+        quick: bool,
+    },
 }
 
 /// A method, or none where the plan is to choose.
@@ -120,6 +147,20 @@ fn main() -> ExitCode {
             tolerance,
         } => mesh::run(&scene, &output, tolerance),
         Command::Explain { scene } => explain::run(&scene),
+        #[cfg(feature = "lab")]
+        Command::Atlas { output } => atlas::run(&output),
+        #[cfg(feature = "lab")]
+        Command::Chart {
+            output,
+            scenes,
+            peers,
+            quick,
+        } => chart::run(&chart::Options {
+            folder: &output,
+            scenes: &scenes,
+            peers: peers.as_deref(),
+            quick,
+        }),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
