@@ -2,7 +2,9 @@
 
 #![expect(clippy::unwrap_used, reason = "a scene that is refused fails the test")]
 
-use penumbral::{Color, DensityMap, Light, PixelOptions, Scene, Scratch, Shape, Surface, Tone};
+use penumbral::{
+    Color, DensityMap, Light, PixelOptions, Pose, Scene, Scratch, Shape, Surface, Tone,
+};
 
 /// Numbers from 0 to 1, the same ones every time.
 struct Random(u64);
@@ -182,4 +184,35 @@ fn a_scene_moved_by_whole_pixels_has_the_same_bits() {
             |map: &DensityMap, first: usize| map.densities()[row * 240 + first..][..200].to_vec();
         assert_eq!(part(&here, 0), part(&there, 37), "row {row}");
     }
+}
+
+#[test]
+fn a_tilted_card_and_a_level_one_hide_their_union() {
+    // The tilted card lies level: each pixel is what two level cards make it, by another way.
+    let scene = |is_posed: bool| {
+        let light = Light::new([80.0, 40.0, 300.0], 150.0).unwrap();
+        let mut scene = Scene::new([160.0, 160.0], light).unwrap();
+        let high = Shape::rect(50.0, 60.0, 50.0, 40.0).unwrap();
+        let low = Shape::rounded_rect(30.0, 40.0, 60.0, 50.0, 9.0).unwrap();
+        let pose = Pose::turned(30.0, [0.0, 0.0], [1.0, 0.0], 0.0).unwrap();
+        scene.push(Surface::new(low, 12.0)).unwrap();
+        scene
+            .push(if is_posed {
+                Surface::posed(high, &pose)
+            } else {
+                Surface::new(high, 30.0)
+            })
+            .unwrap();
+        let mut map = DensityMap::default();
+        let shadows = scene.ground_shadows().unwrap();
+        shadows.draw(&mut map, &PixelOptions::default(), &mut Scratch::new());
+        map
+    };
+    let (posed, level) = (scene(true), scene(false));
+    let errors = posed.densities().iter().zip(level.densities());
+    let worst = errors
+        .map(|(a, b)| (a - b).abs() * 255.0)
+        .fold(0.0, f32::max);
+    println!("{worst} levels");
+    assert!(worst < 1.2, "{worst} levels");
 }

@@ -35,17 +35,27 @@ pub enum Overlap {
 /// whatever it hides is alone, too: an image's rays are stopped here and there.
 pub(super) fn groups(casts: &[Cast], overlap: Overlap) -> Vec<Vec<&Cast>> {
     let is_alone =
-        |cast: &&Cast| overlap == Overlap::SourceOver || matches!(cast.shadow, AnyShadow::Alpha(_));
-    let (alone, together): (Vec<&Cast>, Vec<&Cast>) = casts.iter().partition(is_alone);
-    let boxed = together.into_iter().filter_map(|cast| {
+        |cast: &Cast| overlap == Overlap::SourceOver || matches!(cast.shadow, AnyShadow::Alpha(_));
+    let boxed = casts.iter().enumerate().filter_map(|(index, cast)| {
         let (min, max) = cast.shadow.reach(1.0)?;
-        Some((min, max, cast))
+        (!is_alone(cast)).then_some((min, max, (index, cast)))
     });
-    let mut groups = overlapping(boxed.collect());
-    for group in &mut groups {
-        group.sort_by(|a, b| b.strength.total_cmp(&a.strength));
-    }
-    groups.extend(alone.into_iter().map(|cast| vec![cast]));
+    let mut groups: Vec<Vec<&Cast>> = overlapping(boxed.collect())
+        .into_iter()
+        .map(|mut group| {
+            // An order of their own, so that what is far away does not change it.
+            group.sort_by(|(first, a), (second, b)| {
+                b.strength.total_cmp(&a.strength).then(first.cmp(second))
+            });
+            group.into_iter().map(|(_, cast)| cast).collect()
+        })
+        .collect();
+    groups.extend(
+        casts
+            .iter()
+            .filter(|cast| is_alone(cast))
+            .map(|cast| vec![cast]),
+    );
     groups
 }
 
@@ -66,15 +76,15 @@ struct Pixel {
     /// What the first two that hide a part of the disc hide.
     densities: [f32; 2],
     /// The casts that hide a part of the disc, and those that hide all of it, a bit each: the last bit stands for all from there on.
-    partial: u64,
-    full: u64,
+    partial: u16,
+    full: u16,
 }
 
 /// The first cast that has no bit for itself.
-const REST: usize = 63;
+const REST: usize = 15;
 
 impl Pixel {
-    fn add(&mut self, density: f32, cast: &Cast, bit: u64) {
+    fn add(&mut self, density: f32, cast: &Cast, bit: u16) {
         let hides = cast.opacity as f32 * density * (1.0 - self.met);
         self.held += cast.strength as f32 * hides;
         self.met += hides;
@@ -164,10 +174,11 @@ impl Fusion {
                 .filter_map(|cast| Member::new(cast, scale))
                 .collect(),
         };
+        let [shared_columns, shared_rows] = shared_pixels(group, &window);
         for row in 0..rows.len() {
-            if members.len() > 1 {
-                let pixels = &mut self.pixels[row * width..][..width];
-                let start = window.corner() + DVec2::new(0.0, row as f64);
+            if members.len() > 1 && shared_rows.contains(&row) {
+                let pixels = &mut self.pixels[row * width..][shared_columns.clone()];
+                let start = window.corner() + DVec2::new(shared_columns.start as f64, row as f64);
                 self.meet.mend(&members, start, pixels);
             }
             let pixels = &self.pixels[row * width..][..width];
@@ -197,6 +208,28 @@ fn seen_pixels(group: &[&Cast], grid: &Grid) -> Option<[Range<u32>; 2]> {
         on_grid(min[axis].floor())..on_grid(max[axis].ceil() + 1.0)
     });
     (!seen.iter().any(Range::is_empty)).then_some(seen)
+}
+
+/// The columns and rows of the window that two of the casts may reach.
+fn shared_pixels(group: &[&Cast], window: &Grid) -> [Range<usize>; 2] {
+    let scale = window.pixels_per_unit();
+    let boxes: Vec<(DVec2, DVec2)> = group
+        .iter()
+        .filter_map(|cast| cast.shadow.reach(scale))
+        .collect();
+    [0, 1].map(|axis| {
+        // Beyond the second lowest beginning and the second highest end there is one at most.
+        let mut starts: Vec<f64> = boxes.iter().map(|(min, _)| min[axis]).collect();
+        let mut ends: Vec<f64> = boxes.iter().map(|(_, max)| max[axis]).collect();
+        starts.sort_by(f64::total_cmp);
+        ends.sort_by(|a, b| b.total_cmp(a));
+        let (Some(start), Some(end)) = (starts.get(1), ends.get(1)) else {
+            return 0..0;
+        };
+        let count = f64::from([window.width(), window.height()][axis]);
+        let on_window = |v: f64| (v - window.corner()[axis]).clamp(0.0, count) as usize;
+        on_window(start.floor())..on_window(end.ceil() + 1.0)
+    })
 }
 
 impl Member {
@@ -234,6 +267,11 @@ impl Member {
             Kind::Level(occluder) => averaged_side(occluder.radius),
             Kind::Tilted(_) => 0.0,
         }
+    }
+
+    /// Whether points of a row see it along the same chords, each as it is at the point.
+    fn is_plain(&self) -> bool {
+        matches!(self.kind, Kind::Level(_)) && self.averaged_side() == 0.0
     }
 }
 
@@ -309,7 +347,7 @@ impl<'a> Company<'a> {
             members: Vec::new(),
             partial: Vec::new(),
         };
-        let has = |bits: u64, index: usize| bits >> index.min(REST) & 1 == 1;
+        let has = |bits: u16, index: usize| bits >> index.min(REST) & 1 == 1;
         for (index, member) in members.iter().enumerate() {
             let is_partial = has(pixel.partial, index) || index >= REST && has(pixel.full, index);
             if is_partial {
@@ -363,12 +401,7 @@ impl Meet {
             let corner = start + DVec2::new(index as f64, 0.0);
             let run = &mut pixels[index..index + count];
             match *company.partial {
-                [a, b]
-                    if first.partial >> REST == 0
-                        && company
-                            .partial()
-                            .all(|member| member.averaged_side() == 0.0) =>
-                {
+                [a, b] if first.partial >> REST == 0 && company.partial().all(Member::is_plain) => {
                     let lowest = first.partial.trailing_zeros() as usize;
                     let highest = REST - first.partial.leading_zeros() as usize;
                     self.mend_pair(&company, [a, b], [lowest, highest], corner, run);
@@ -395,10 +428,14 @@ impl Meet {
             return;
         }
         let mut shared = None;
+        let (mut parallel, mut until) = (None, f64::MIN);
         for lane in 0..run.len() {
             let [a, b] = run[lane].densities;
             let at = corner + DVec2::new(lane as f64 + 0.5, 0.5);
-            let together = match self.parallel(company, pair, indices, at) {
+            if at.x >= until {
+                (parallel, until) = self.parallel(company, pair, indices, at);
+            }
+            let together = match parallel {
                 // One hides what the other does, or what it does not.
                 Some(true) => a.min(b),
                 Some(false) => (a + b - 1.0).max(0.0),
@@ -416,21 +453,24 @@ impl Meet {
         }
     }
 
-    /// Whether the disc about a point shows a single line of each of a pair, and these are parallel: then, whether they face one way.
+    /// Whether the disc about a point shows a single line of each of a pair, and these are parallel: then, whether they face one
+    /// way. And up to which x to the right of the point that stays so.
     fn parallel(
         &self,
         company: &Company<'_>,
         pair: [usize; 2],
         indices: [usize; 2],
         at: DVec2,
-    ) -> Option<bool> {
-        let single = |of: usize| match &company.members[pair[of]].kind {
+    ) -> (Option<bool>, f64) {
+        let [(a, until_a), (b, until_b)] = [0, 1].map(|of| match &company.members[pair[of]].kind {
             Kind::Level(occluder) => occluder.single_line(&self.lines[indices[of]], at),
-            Kind::Tilted(_) => None,
-        };
-        let (a, b) = (single(0)?, single(1)?);
-        let is_parallel = a.perp_dot(b).abs() <= PARALLEL * a.length() * b.length();
-        is_parallel.then_some(a.dot(b) > 0.0)
+            Kind::Tilted(_) => (None, f64::MAX),
+        });
+        let parallel = a.zip(b).and_then(|(a, b)| {
+            let is_parallel = a.perp_dot(b).abs() <= PARALLEL * a.length() * b.length();
+            is_parallel.then_some(a.dot(b) > 0.0)
+        });
+        (parallel, until_a.min(until_b))
     }
 
     fn mend_all(&mut self, company: &Company<'_>, corner: DVec2, run: &mut [Pixel]) {

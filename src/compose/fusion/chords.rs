@@ -72,22 +72,34 @@ impl Occluder {
         }
     }
 
-    /// The direction of the outline where the disc about a point meets it in a single line from one side to the other, or none.
-    pub(super) fn single_line(&self, lines: &[[DVec2; 2]], at: DVec2) -> Option<DVec2> {
-        let (min, max) = (at - self.radius, at + self.radius);
-        let mut single = None;
+    /// The direction of the outline where the disc about a point meets it in a single line from one side to the other, or none;
+    /// and up to which x to the right of the point that stays so.
+    pub(super) fn single_line(&self, lines: &[[DVec2; 2]], at: DVec2) -> (Option<DVec2>, f64) {
+        let reach = self.radius;
+        let (mut count, mut single, mut until) = (0, None, f64::MAX);
         for &[from, to] in lines {
             let (low, high) = (from.min(to), from.max(to));
-            if low.cmpgt(max).any() || high.cmplt(min).any() {
+            if at.x > high.x + reach {
                 continue;
             }
-            let spans = |axis: usize| low[axis] <= min[axis] && high[axis] >= max[axis];
-            if single.is_some() || !(spans(0) || spans(1)) {
-                return None;
+            if at.x < low.x - reach {
+                until = until.min(low.x - reach);
+                continue;
             }
-            single = Some(to - from);
+            until = until.min(high.x + reach);
+            count += 1;
+            let spans_rows = low.y <= at.y - reach && high.y >= at.y + reach;
+            let spans_columns = at.x >= low.x + reach && at.x <= high.x - reach;
+            if spans_columns {
+                until = until.min(high.x - reach);
+            } else if at.x < low.x + reach {
+                until = until.min(low.x + reach);
+            }
+            if spans_rows || spans_columns {
+                single = Some(to - from);
+            }
         }
-        single
+        (single.filter(|_| count == 1), until)
     }
 
     /// A caster of many radii as one point sees it, on the light's unit disc.
