@@ -80,17 +80,26 @@ struct Pixel {
     full: u16,
 }
 
+/// Densities within this of 0 and 1 are these.
+const ROUNDING: f32 = 1e-6;
+
 /// The first cast that has no bit for itself.
 const REST: usize = 15;
 
 impl Pixel {
     fn add(&mut self, density: f32, cast: &Cast, bit: u16) {
+        // What rounding leaves beyond a shadow's ends would make a partial cast of none.
+        let density = match density {
+            ..ROUNDING => return,
+            density if density > 1.0 - ROUNDING => 1.0,
+            density => density,
+        };
         let hides = cast.opacity as f32 * density * (1.0 - self.met);
         self.held += cast.strength as f32 * hides;
         self.met += hides;
         if density >= 1.0 {
             self.full |= bit;
-        } else if density > 0.0 {
+        } else {
             if let Some(to) = self.densities.get_mut(self.partial.count_ones() as usize) {
                 *to = density;
             }
