@@ -7,6 +7,7 @@
 //!
 //! The tangent construction follows US 9,639,976; pixels ([`Shadow::fill_a8`]) and point queries do not use it.
 
+mod compact;
 mod export;
 mod gouraud;
 mod profile;
@@ -23,6 +24,7 @@ use core::f64::consts::FRAC_2_PI;
 
 use glam::DVec2;
 
+pub use compact::{CompactMesh, CompactVertex};
 pub use export::meshes_to_svg;
 pub use profile::Profile;
 use profile::{Knot, Pieces};
