@@ -7,6 +7,7 @@
 //!
 //! The tangent construction follows US 9,639,976; pixels ([`Shadow::fill_a8`]) and point queries do not use it.
 
+mod cache;
 mod compact;
 mod export;
 mod gouraud;
@@ -24,6 +25,7 @@ use core::f64::consts::FRAC_2_PI;
 
 use glam::DVec2;
 
+pub use cache::MeshCache;
 pub use compact::{CompactMesh, CompactVertex};
 pub use export::meshes_to_svg;
 pub use profile::Profile;
