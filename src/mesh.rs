@@ -9,6 +9,7 @@
 
 mod cache;
 mod compact;
+mod donut;
 mod export;
 mod gouraud;
 mod profile;
