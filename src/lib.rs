@@ -67,7 +67,7 @@
 //! | `nine_patch.rs` | [`NinePatch`], [`ShadowKey`]: masks that stretch, to be kept |
 //! | `parallel.rs` | bands of rows on several threads |
 //! | `scratch.rs`, `error.rs`, `limits.rs` | [`Scratch`], [`Error`], [`Limits`] |
-//! | `lab.rs`, `lab/` | [`lab`](crate::lab): other ways to draw a shadow, to be measured against, one a file |
+//! | `lab.rs`, `lab/` | [`lab`]: other ways to draw a shadow, to be measured against, one a file |
 //! | `bin/penumbral` | the command line |
 //!
 //! # Features
@@ -79,7 +79,7 @@
 //! | `scene` | [`Scene::from_json`] | `serde`, `serde_json`, `svg-path` |
 //! | `cli` | the command line `penumbral` | clap, image, indicatif, `raster`, `scene` |
 //! | `lyon`, `kurbo` | paths from these crates, meshes into lyon's buffers | kurbo |
-//! | `lab` | [`lab`](crate::lab): the laboratory, and the commands `chart` and `atlas`; no toolkit needs it | |
+//! | `lab` | [`lab`]: the laboratory, and the commands `chart` and `atlas`; no toolkit needs it | |
 //! | `rayon` | [`Shadow::blend_rgba8_in_bands`](crate::Shadow): drawing on several threads | rayon |
 //!
 //! # Stability guarantees
