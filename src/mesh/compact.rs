@@ -155,7 +155,12 @@ mod tests {
     }
 
     fn turn(a: Vec2, b: Vec2) -> f32 {
-        a.perp_dot(b).atan2(a.dot(b))
+        let (y, x) = (a.perp_dot(b), a.dot(b));
+        if y == 0.0 && x >= 0.0 {
+            0.0
+        } else {
+            y.atan2(x)
+        }
     }
 
     fn line(a: Vec2, b: Vec2) -> f32 {
@@ -180,7 +185,7 @@ mod tests {
         let excess = d - radius;
         let sine = ((1.0 - excess * excess) / (4.0 * d * radius).max(1e-12)).clamp(0.0, 1.0);
         let w = 2.0 * sine.sqrt().asin();
-        let mut middle = (-m.y).atan2(-m.x) + 3.0 * FRAC_PI_4;
+        let mut middle = turn(Vec2::X, -m) + 3.0 * FRAC_PI_4;
         middle -= TAU * (middle / TAU).round();
         let mut sum = 0.0;
         for part in 0..5 {
@@ -282,6 +287,20 @@ mod tests {
                     );
                 }
             }
+        }
+    }
+
+    #[test]
+    fn corners_and_their_centers_are_exact() {
+        let shadow = shadow([70.0, 40.0], [8.0; 4], 10.0);
+        let mesh = shadow.compact_mesh().unwrap();
+        let half_size = Vec2::from(mesh.half_size());
+        for inwards in [0.0, 0.8] {
+            let place = Vec2::splat(inwards) - half_size;
+            let found = density(place, half_size, mesh.corner_radii());
+            let exact = shadow.density_at([-5.0 + 10.0 * inwards, 3.0 + 10.0 * inwards]);
+            let error = (f64::from(found) - exact).abs() * 255.0;
+            assert!(error <= mesh.error_levels(), "{inwards}: {error}");
         }
     }
 

@@ -52,8 +52,11 @@ fn cross(a: vec2f, b: vec2f) -> f32 {
     return a.x * b.y - a.y * b.x;
 }
 
+// The angle from a to b. Without length, as in a pixel on a corner, WGSL leaves atan2 open.
 fn turn(a: vec2f, b: vec2f) -> f32 {
-    return atan2(cross(a, b), dot(a, b));
+    let y = cross(a, b);
+    let x = dot(a, b);
+    return select(atan2(y, x), 0.0, y == 0.0 && x >= 0.0);
 }
 
 // Twice the area that the unit disc shares with the triangle of its centre and a line.
@@ -80,7 +83,7 @@ fn arc(m: vec2f, radius: f32) -> f32 {
     let excess = d - radius;
     let sine = clamp((1.0 - excess * excess) / max(4.0 * d * radius, 1e-12), 0.0, 1.0);
     let w = 2.0 * asin(sqrt(sine));
-    var middle = atan2(-m.y, -m.x) + 0.75 * PI;
+    var middle = turn(vec2f(1.0, 0.0), -m) + 0.75 * PI;
     middle -= 2.0 * PI * round(middle / (2.0 * PI));
     var sum = 0.0;
     for (var part = 0; part < 5; part++) {
