@@ -7,6 +7,9 @@
 //!
 //! The tangent construction follows US 9,639,976; pixels ([`Shadow::fill_a8`]) and point queries do not use it.
 
+mod cache;
+mod compact;
+mod donut;
 mod export;
 mod gouraud;
 mod profile;
@@ -23,6 +26,8 @@ use core::f64::consts::FRAC_2_PI;
 
 use glam::DVec2;
 
+pub use cache::MeshCache;
+pub use compact::{CompactMesh, CompactVertex};
 pub use export::meshes_to_svg;
 pub use profile::Profile;
 use profile::{Knot, Pieces};

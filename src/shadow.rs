@@ -7,7 +7,7 @@ use core::borrow::Borrow;
 use std::borrow::Cow;
 use std::sync::OnceLock;
 
-use glam::DVec2;
+use glam::{DAffine2, DVec2};
 
 use crate::apart::overlapping;
 use crate::density::blend::{A8, Ink, Layout, Rgba8};
@@ -204,6 +204,30 @@ impl Shadow {
         };
         shadow.find_parts();
         shadow
+    }
+
+    /// The same shadow moved by `offset`.
+    pub(crate) fn moved(&self, offset: DVec2) -> Self {
+        let affine = DAffine2::from_translation(offset);
+        let moved = |group: &Vec<Shape>| group.iter().map(|shape| shape.mapped(&affine)).collect();
+        let mut shadow = Self {
+            radius: self.radius,
+            fixed: self.fixed.moved(offset),
+            curved: self.curved.iter().map(moved).collect(),
+            ..Self::default()
+        };
+        shadow.find_parts();
+        shadow
+    }
+
+    /// The loops of the shapes made of lines and circular arcs.
+    pub(crate) fn fixed(&self) -> &Outline {
+        &self.fixed
+    }
+
+    /// The shapes that need flattening, those that may overlap together.
+    pub(crate) fn curved(&self) -> &[Vec<Shape>] {
+        &self.curved
     }
 
     /// The larger side of a box that holds the outline, in scene units.

@@ -1,0 +1,392 @@
+//! Meshes kept by what they depend on: shape, penumbra radius and scale, but not place.
+
+use core::f64::consts::{PI, SQRT_2, TAU};
+use core::num::NonZeroUsize;
+
+use glam::DVec2;
+
+use super::{MeshOptions, Profile, ShadowMesh};
+use crate::outline::Edge;
+use crate::path::{FillRule, Segment};
+use crate::shadow::Shadow;
+use crate::shape::Cover;
+
+/// The meshes last used, at most a fixed number of them. A shadow that was moved finds the mesh that it had before.
+///
+/// Shadows are taken for the same where their outlines, wherever they are, differ by so little that a tenth of the tolerance
+/// covers it; with penumbra radius 0, and for other [profiles](Profile) than the disc's, where they do not differ at all.
+/// A shadow whose numbers are rounded differently elsewhere may be made anew, never drawn wrong.
+///
+/// ```
+/// use core::num::NonZeroUsize;
+/// use penumbral::{Light, MeshCache, Shape, Tolerance};
+///
+/// let mut cache = MeshCache::new(NonZeroUsize::new(64).unwrap());
+/// let light = Light::android(400.0)?;
+/// for scroll in [0.0, 8.0, 64.5] {
+///     let card = Shape::rounded_rect(16.0, 100.0 + scroll, 300.0, 200.0, 12.0)?;
+///     let shadow = light.cast(&card, 8.0, 0.0)?;
+///     let (mesh, offset) = cache.mesh(&shadow, Tolerance::ONE_LEVEL);
+///     assert!(mesh.error_levels() <= 1.0);
+///     // Drawn with `offset` added to each vertex.
+///     assert!(offset[1] > f64::from(100.0 + scroll));
+/// }
+/// assert_eq!((cache.hits(), cache.misses()), (2, 1));
+/// # Ok::<(), penumbral::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct MeshCache {
+    meshes: Vec<Kept>,
+    max_meshes: NonZeroUsize,
+    /// The key that is asked for.
+    key: Vec<u64>,
+    hits: u64,
+    misses: u64,
+}
+
+#[derive(Debug, Clone)]
+struct Kept {
+    key: Vec<u64>,
+    mesh: ShadowMesh,
+    /// The number of the question that it last answered.
+    used: u64,
+}
+
+impl MeshCache {
+    /// An empty one that keeps at most `max_meshes`. Each question compares the keys of all of them.
+    #[must_use]
+    pub fn new(max_meshes: NonZeroUsize) -> Self {
+        Self {
+            meshes: Vec::new(),
+            max_meshes,
+            key: Vec::new(),
+            hits: 0,
+            misses: 0,
+        }
+    }
+
+    /// The shadow's mesh and the offset (x, y; scene units) that is to be added to its vertices: within the tolerance, as
+    /// [`Shadow::mesh`] is, before the sums are rounded. A new mesh takes the place of the one that was not used for longest.
+    pub fn mesh(
+        &mut self,
+        shadow: &Shadow,
+        options: impl Into<MeshOptions>,
+    ) -> (&ShadowMesh, [f64; 2]) {
+        let options = options.into();
+        let origin = shadow.hull().map_or(DVec2::ZERO, |(min, _)| min);
+        let step = step(shadow, &options);
+        self.key.clear();
+        write_key(shadow, &options, origin, step, &mut self.key);
+        let found = self.meshes.iter().position(|kept| kept.key == self.key);
+        let index = if let Some(index) = found {
+            self.hits += 1;
+            index
+        } else {
+            self.misses += 1;
+            self.make(shadow, options, origin, step)
+        };
+        let kept = &mut self.meshes[index];
+        kept.used = self.hits + self.misses;
+        (&kept.mesh, origin.to_array())
+    }
+
+    /// Makes the mesh with `origin` moved to zero, and says where it is kept.
+    fn make(
+        &mut self,
+        shadow: &Shadow,
+        mut options: MeshOptions,
+        origin: DVec2,
+        step: f64,
+    ) -> usize {
+        let mut alike = 0.0;
+        if step > 0.0 {
+            alike = options.tolerance.as_levels() * ALIKE_SHARE;
+            options.tolerance = options.tolerance.divided(1.0 / (1.0 - ALIKE_SHARE));
+        }
+        let mut mesh = shadow.moved(-origin).mesh(options);
+        mesh.error_levels += alike;
+        let kept = Kept {
+            key: self.key.clone(),
+            mesh,
+            used: 0,
+        };
+        if self.meshes.len() < self.max_meshes.get() {
+            self.meshes.push(kept);
+            return self.meshes.len() - 1;
+        }
+        let oldest = self.meshes.iter().enumerate().min_by_key(|(_, k)| k.used);
+        let index = oldest.map_or(0, |(index, _)| index);
+        self.meshes[index] = kept;
+        index
+    }
+
+    /// How many meshes it holds.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.meshes.len()
+    }
+
+    /// Whether it holds none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.meshes.is_empty()
+    }
+
+    /// How often a mesh was there.
+    #[must_use]
+    pub fn hits(&self) -> u64 {
+        self.hits
+    }
+
+    /// How often a mesh had to be made.
+    #[must_use]
+    pub fn misses(&self) -> u64 {
+        self.misses
+    }
+}
+
+/// The part of the tolerance by which shadows of one key may differ.
+const ALIKE_SHARE: f64 = 0.1;
+
+/// The steps that lengths are counted in, a power of two; 0 where they are compared to the last bit.
+///
+/// An outline whose points move by d changes the area in a disc by d times its length there. A point comes from up to
+/// three vectors (an arc's centre and axes), each a step off in x and y.
+fn step(shadow: &Shadow, options: &MeshOptions) -> f64 {
+    let radius = shadow.radius();
+    if options.profile != Profile::Disc || radius == 0.0 {
+        return 0.0;
+    }
+    let reached: f64 = lengths(shadow).map(|l| l.min(2.0 * TAU * radius)).sum();
+    if reached == 0.0 {
+        return 0.0;
+    }
+    let change = options.tolerance.as_levels() / 255.0 * ALIKE_SHARE;
+    let step = change * PI * radius * radius / (reached * 3.0 * SQRT_2);
+    // The number without its fraction bits: the power of two at or below it.
+    f64::from_bits(step.to_bits() >> 52 << 52)
+}
+
+/// No less than the lengths of the outline's edges.
+fn lengths(shadow: &Shadow) -> impl Iterator<Item = f64> {
+    let fixed = shadow.fixed().edges().map(|edge| match edge {
+        Edge::Line(line) | Edge::Border(line) => (line.to - line.from).length(),
+        Edge::Arc(arc) => arc.sweep.abs() * arc.radius,
+    });
+    let contours = shadow
+        .curved()
+        .iter()
+        .flatten()
+        .flat_map(|shape| &shape.contours);
+    let curved = contours.flat_map(|contour| {
+        let mut from = contour.start;
+        let closing = contour
+            .segments
+            .last()
+            .map_or(0.0, |last| (last.end() - from).length());
+        let segments = contour.segments.iter().map(move |segment| {
+            let start = from;
+            from = segment.end();
+            match *segment {
+                Segment::Line(to) => (to - start).length(),
+                Segment::Quad(a, to) => (a - start).length() + (to - a).length(),
+                Segment::Cubic(a, b, to) => {
+                    (a - start).length() + (b - a).length() + (to - b).length()
+                }
+                Segment::Arc(arc) => arc.sweep.abs() * (arc.u.length() + arc.v.length()),
+            }
+        });
+        segments.chain([closing])
+    });
+    fixed.chain(curved)
+}
+
+/// All that a mesh depends on, each edge and segment after a mark of its kind.
+fn write_key(shadow: &Shadow, options: &MeshOptions, origin: DVec2, step: f64, key: &mut Vec<u64>) {
+    key.extend([
+        shadow.radius().to_bits(),
+        options.tolerance.as_levels().to_bits(),
+        options.profile as u64,
+        options.max_vertices as u64,
+        step.to_bits(),
+    ]);
+    // Whole numbers as `f64`, of which none is too large. Zero has one sign.
+    let count = |value: f64| {
+        let steps = if step > 0.0 {
+            (value / step).round()
+        } else {
+            value
+        };
+        (steps + 0.0).to_bits()
+    };
+    let vector = |v: DVec2| [count(v.x), count(v.y)];
+    let point = |p: DVec2| vector(p - origin);
+    for edges in &shadow.fixed().loops {
+        key.push(Mark::Loop as u64);
+        for edge in edges {
+            match edge {
+                Edge::Line(line) | Edge::Border(line) => {
+                    key.push(Mark::Line as u64);
+                    key.extend(point(line.from));
+                }
+                Edge::Arc(arc) => {
+                    key.push(Mark::Arc as u64);
+                    key.extend(point(arc.from));
+                    key.extend(point(arc.center));
+                    key.extend([count(arc.radius), arc.start.to_bits(), arc.sweep.to_bits()]);
+                }
+            }
+        }
+    }
+    for group in shadow.curved() {
+        key.push(Mark::Group as u64);
+        for shape in group {
+            key.push(match shape.cover {
+                Cover::Simple => Mark::Simple,
+                Cover::Rule(FillRule::NonZero) => Mark::NonZero,
+                Cover::Rule(FillRule::EvenOdd) => Mark::EvenOdd,
+            } as u64);
+            for contour in &shape.contours {
+                key.push(Mark::Loop as u64);
+                key.extend(point(contour.start));
+                for segment in &contour.segments {
+                    match *segment {
+                        Segment::Line(to) => {
+                            key.push(Mark::Line as u64);
+                            key.extend(point(to));
+                        }
+                        Segment::Quad(a, to) => {
+                            key.push(Mark::Quad as u64);
+                            key.extend([a, to].map(point).as_flattened());
+                        }
+                        Segment::Cubic(a, b, to) => {
+                            key.push(Mark::Cubic as u64);
+                            key.extend([a, b, to].map(point).as_flattened());
+                        }
+                        Segment::Arc(arc) => {
+                            key.push(Mark::Arc as u64);
+                            key.extend(
+                                [point(arc.center), vector(arc.u), vector(arc.v)].as_flattened(),
+                            );
+                            key.extend([arc.start.to_bits(), arc.sweep.to_bits()]);
+                            key.extend(point(arc.to));
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// What comes next in a key.
+#[derive(Clone, Copy)]
+enum Mark {
+    Loop,
+    Line,
+    Arc,
+    Quad,
+    Cubic,
+    Group,
+    Simple,
+    NonZero,
+    EvenOdd,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::light::Light;
+    use crate::path::Path;
+    use crate::shape::Shape;
+    use crate::tolerance::Tolerance;
+
+    fn cache(meshes: usize) -> MeshCache {
+        MeshCache::new(NonZeroUsize::new(meshes).unwrap())
+    }
+
+    fn card(x: f32, y: f32, width: f32) -> Shape {
+        Shape::rounded_rect(x, y, width, 50.0, 6.0).unwrap()
+    }
+
+    /// A crossing outline with curves of every kind.
+    fn blob() -> Shape {
+        let mut path = Path::new();
+        path.move_to([0.0, 0.0]).quad_to([20.0, -9.0], [40.0, 0.0]);
+        path.cubic_to([60.0, 20.0], [-9.0, 20.0], [30.0, 44.0]);
+        path.arc_to([9.0, 5.0], 20.0, false, true, [8.0, 40.0])
+            .line_to([20.0, -4.0])
+            .close();
+        Shape::path(&path, FillRule::EvenOdd).unwrap()
+    }
+
+    #[test]
+    fn a_moved_shadow_finds_its_mesh_and_it_fits() {
+        let light = Light::android(360.0).unwrap();
+        let star = [[0.0, 0.0], [30.0, 8.0], [60.0, 0.0], [31.0, 50.0]];
+        let star = Shape::polygon(&[star], FillRule::NonZero).unwrap();
+        for shape in [card(0.0, 0.0, 80.0), star, blob()] {
+            let mut cache = cache(4);
+            for offset in [[10.0, 20.0], [300.25, 20.5], [17.0, 903.1], [-40.7, -3.3]] {
+                let moved = shape.translated(offset).unwrap();
+                let shadow = light.cast(&moved, 6.0, 0.0).unwrap();
+                let (mesh, [x, y]) = cache.mesh(&shadow, Tolerance::ONE_LEVEL);
+                assert!(mesh.is_complete() && mesh.error_levels() <= 1.0);
+                for [a, b, c] in mesh.triangles() {
+                    let middle = [0, 1].map(|i: usize| {
+                        let sum = a.position[i] + b.position[i] + c.position[i];
+                        f64::from(sum) / 3.0 + [x, y][i]
+                    });
+                    let density = f64::from(a.density + b.density + c.density) / 3.0;
+                    let exact = shadow.density_at(middle.map(|v| v as f32));
+                    let error = (density - exact).abs() * 255.0;
+                    assert!(error <= 1.0, "{offset:?}: {error}");
+                }
+            }
+            assert_eq!((cache.hits(), cache.misses()), (3, 1));
+        }
+    }
+
+    #[test]
+    fn whatever_changes_the_mesh_is_a_miss() {
+        let mut cache = cache(20);
+        let light = Light::directional([0.0, 0.0], 1.0).unwrap();
+        let mut ask = |shape: &Shape, elevation: f32, options: MeshOptions| {
+            let shadow = light.cast(shape, elevation, 0.0).unwrap();
+            let before = cache.misses();
+            cache.mesh(&shadow, options);
+            cache.misses() > before
+        };
+        let one = MeshOptions::new(Tolerance::ONE_LEVEL);
+        let four = MeshOptions::new(Tolerance::levels(4.0).unwrap());
+        assert!(ask(&card(0.0, 0.0, 80.0), 8.0, one));
+        assert!(!ask(&card(0.0, 7.0, 80.0), 8.0, one));
+        assert!(ask(&card(0.0, 0.0, 80.1), 8.0, one));
+        assert!(ask(&card(0.0, 0.0, 80.0), 8.01, one));
+        assert!(ask(&card(0.0, 0.0, 80.0), 8.0, four));
+        assert!(ask(&card(0.0, 0.0, 80.0), 8.0, four.with_max_vertices(99)));
+        assert!(ask(
+            &card(0.0, 0.0, 80.0),
+            8.0,
+            one.with_profile(Profile::Linear)
+        ));
+        assert!(ask(&card(0.0, 0.0, 80.0), 0.0, one));
+        assert!(!ask(&card(5.0, 0.0, 80.0), 0.0, one));
+        assert!(ask(&blob(), 8.0, one));
+    }
+
+    #[test]
+    fn the_one_not_used_for_longest_goes() {
+        let mut cache = cache(2);
+        let light = Light::directional([0.0, 0.0], 1.0).unwrap();
+        let mut ask = |width: f32| {
+            let shadow = light.cast(&card(0.0, 0.0, width), 8.0, 0.0).unwrap();
+            let before = cache.hits();
+            cache.mesh(&shadow, Tolerance::levels(8.0).unwrap());
+            (cache.hits() > before, cache.len())
+        };
+        let asked = [30.0, 40.0, 30.0, 50.0, 30.0, 40.0].map(&mut ask);
+        let hits = asked.map(|(hit, _)| hit);
+        assert_eq!(hits, [false, false, true, false, true, false]);
+        assert_eq!(asked.map(|(_, len)| len), [1, 2, 2, 2, 2, 2]);
+    }
+}
