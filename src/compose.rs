@@ -62,6 +62,13 @@ impl Receiver {
             max,
         })
     }
+
+    fn meets(&self, surface: &Surface, projection: &Projection) -> bool {
+        surface.hull().is_some_and(|hull| {
+            let (min, max) = projection.shaded(hull);
+            min.cmple(self.max).all() && max.cmpge(self.min).all()
+        })
+    }
 }
 
 /// What casts shadows: one of the lights, or the ambience. An ambient shadow is the caster's own outline, blurred by half its
@@ -112,6 +119,24 @@ impl Source {
                 Light::directional([0.0, 0.0], 0.5)?.cast_posed(surface.shape(), pose, receiver)
             }
         }
+    }
+
+    /// A box that holds the surface and its shadows on every receiver below it. Both ends of a shadow's way from the caster to the
+    /// ground are in it, and between them it moves and grows evenly.
+    pub(crate) fn reach(&self, surface: &Surface) -> Result<Option<(DVec2, DVec2)>> {
+        let Some((min, max)) = surface.hull() else {
+            return Ok(None);
+        };
+        let on_ground = match surface.form() {
+            Form::Posed(pose) => self.cast_posed(surface, pose, 0.0)?.hull(),
+            Form::Level | Form::Image(..) => {
+                let projection = self.projection(surface.elevation(), 0.0)?;
+                Some(projection.shaded((min, max)))
+            }
+        };
+        Ok(Some(on_ground.map_or((min, max), |ground| {
+            (min.min(ground.0), max.max(ground.1))
+        })))
     }
 }
 
@@ -164,7 +189,7 @@ impl<'a> Stage<'a> {
             let casters = self.casters(source, nearby, receiver)?;
             let casts: Result<Vec<Cast>> = casters
                 .iter()
-                .map(|caster| caster.cast(source, receiver.elevation))
+                .filter_map(|surfaces| cast(surfaces, source, receiver.elevation).transpose())
                 .collect();
             Ok((*strength, casts?))
         });
@@ -185,12 +210,13 @@ impl<'a> Stage<'a> {
         Ok(false)
     }
 
+    /// The surfaces that cast on a receiver, those of one shadow together.
     fn casters(
         &self,
         source: &Source,
         nearby: &Nearby,
         receiver: &Receiver,
-    ) -> Result<Vec<Casters<'a>>> {
+    ) -> Result<Vec<Vec<&'a Surface>>> {
         let mut casters = Vec::new();
         let (posed, level): (Vec<&Surface>, Vec<&Surface>) = nearby
             .of(receiver)
@@ -202,99 +228,45 @@ impl<'a> Stage<'a> {
             .filter(|surface| surface.elevation() > receiver.elevation)
             .collect();
         for level in above.chunk_by(|a, b| a.elevation() == b.elevation()) {
-            let elevation = level[0].elevation();
-            let projection = source.projection(elevation, receiver.elevation)?;
+            let projection = source.projection(level[0].elevation(), receiver.elevation)?;
             let meeting = level
                 .iter()
                 .copied()
                 .filter(|surface| receiver.meets(surface, &projection));
-            let (united, single): (Vec<&Surface>, Vec<&Surface>) = meeting
-                .partition(|surface| surface.is_opaque() && matches!(surface.form(), Form::Level));
+            let (united, single): (Vec<&Surface>, Vec<&Surface>) =
+                meeting.partition(|surface| surface.is_united());
             if !united.is_empty() {
-                casters.push(Casters {
-                    surfaces: united,
-                    elevation,
-                    opacity: 1.0,
-                });
+                casters.push(united);
             }
-            casters.extend(single.into_iter().map(Casters::alone));
+            casters.extend(single.into_iter().map(|surface| vec![surface]));
         }
         let is_above = |surface: &&Surface| surface.highest() > f64::from(receiver.elevation);
-        casters.extend(posed.into_iter().filter(is_above).map(Casters::alone));
+        let posed = posed.into_iter().filter(is_above);
+        casters.extend(posed.map(|surface| vec![surface]));
         Ok(casters)
     }
 }
 
-impl Source {
-    /// A box that holds the surface and its shadows on every receiver below it. Both ends of a shadow's way from the caster to the
-    /// ground are in it, and between them it moves and grows evenly.
-    pub(crate) fn reach(&self, surface: &Surface) -> Result<Option<(DVec2, DVec2)>> {
-        let Some((min, max)) = surface.hull() else {
-            return Ok(None);
-        };
-        let on_ground = match surface.form() {
-            Form::Posed(pose) => self.cast_posed(surface, pose, 0.0)?.hull(),
-            _ => {
-                let projection = self.projection(surface.elevation(), 0.0)?;
-                let place = |p: DVec2| p * projection.scale + projection.offset;
-                Some((
-                    place(min) - projection.radius,
-                    place(max) + projection.radius,
-                ))
-            }
-        };
-        Ok(Some(on_ground.map_or((min, max), |ground| {
-            (min.min(ground.0), max.max(ground.1))
-        })))
-    }
-}
-
-impl Receiver {
-    fn meets(&self, surface: &Surface, projection: &Projection) -> bool {
-        let Some((min, max)) = surface.hull() else {
-            return false;
-        };
-        let min = min * projection.scale + projection.offset - projection.radius;
-        let max = max * projection.scale + projection.offset + projection.radius;
-        min.cmple(self.max).all() && max.cmpge(self.min).all()
-    }
-}
-
-/// Surfaces that cast one shadow on a receiver.
-struct Casters<'a> {
-    surfaces: Vec<&'a Surface>,
-    elevation: f32,
-    opacity: f32,
-}
-
-impl<'a> Casters<'a> {
-    fn alone(surface: &'a Surface) -> Self {
-        Self {
-            surfaces: vec![surface],
-            elevation: surface.elevation(),
-            opacity: surface.weight(),
+/// The one shadow on a receiver of surfaces that are alike: several of them are level and opaque, of one elevation.
+fn cast(surfaces: &[&Surface], source: &Source, receiver: f32) -> Result<Option<Cast>> {
+    let Some(first) = surfaces.first() else {
+        return Ok(None);
+    };
+    let elevation = first.elevation();
+    let projection = || source.projection(elevation, receiver);
+    let shadow = match first.form() {
+        Form::Posed(pose) => AnyShadow::Tilted(source.cast_posed(first, pose, receiver)?),
+        Form::Image(image, place) => {
+            AnyShadow::Alpha(AlphaShadow::project(image, place, &projection()?))
         }
-    }
-
-    fn cast(&self, source: &Source, receiver: f32) -> Result<Cast> {
-        let shadow = match (self.surfaces[0], self.surfaces[0].form()) {
-            (surface, Form::Posed(pose)) => {
-                AnyShadow::Tilted(source.cast_posed(surface, pose, receiver)?)
-            }
-            (_, Form::Image(image, place)) => {
-                let projection = source.projection(self.elevation, receiver)?;
-                AnyShadow::Alpha(AlphaShadow::project(image, place, &projection))
-            }
-            (_, Form::Level) => {
-                let projection = source.projection(self.elevation, receiver)?;
-                let shapes: Vec<&Shape> = self.surfaces.iter().map(|s| s.shape()).collect();
-                AnyShadow::Level(Shadow::project(&shapes, &projection))
-            }
-        };
-        Ok(Cast {
-            shadow,
-            strength: source.strength(self.elevation, receiver),
-            opacity: f64::from(self.opacity),
-        })
-    }
+        Form::Level => {
+            let shapes: Vec<&Shape> = surfaces.iter().map(|surface| surface.shape()).collect();
+            AnyShadow::Level(Shadow::project(&shapes, &projection()?))
+        }
+    };
+    Ok(Some(Cast {
+        shadow,
+        strength: source.strength(elevation, receiver),
+        opacity: f64::from(first.weight()),
+    }))
 }

@@ -3,6 +3,7 @@
 pub(crate) mod alpha;
 mod area;
 pub(crate) mod blend;
+mod buffer;
 mod chords;
 pub(crate) mod circle;
 mod cubic;
@@ -33,6 +34,7 @@ use crate::shadow::Shadow;
 use crate::tolerance::Tolerance;
 
 pub(crate) use area::at_point;
+pub(crate) use buffer::clear;
 pub(crate) use field::Field;
 
 /// How far flattening may move the density of `exact`, in levels.

@@ -19,9 +19,9 @@
 //! | `stage.rs`, `image.rs`, `plane.rs`, `view.rs`, `rays.rs` | what they share: casters in space, images, blurred pixels, outlines in pixels, samples | |
 
 mod box3;
+mod card;
 mod depth_map;
 mod gaussian;
-mod image;
 mod irradiance;
 mod monte_carlo;
 mod penumbra_map;
@@ -39,9 +39,9 @@ mod z_buffer;
 use core::fmt;
 
 pub use box3::Box3;
+pub use card::Card;
 pub use depth_map::{DepthMap, DepthView};
 pub use gaussian::Gaussian;
-pub use image::{Card, Image};
 pub use irradiance::Irradiance;
 pub use monte_carlo::{Estimate, MonteCarlo};
 pub use penumbra_map::{DiscLight, Kernel, PenumbraMap, Region};

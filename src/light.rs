@@ -71,6 +71,12 @@ impl Projection {
         Ok(())
     }
 
+    /// The box that the shadow of a box of the caster's plane lies in.
+    pub(crate) fn shaded(&self, (min, max): (DVec2, DVec2)) -> (DVec2, DVec2) {
+        let place = |p: DVec2| p * self.scale + self.offset;
+        (place(min) - self.radius, place(max) + self.radius)
+    }
+
     pub(crate) fn affine(&self) -> DAffine2 {
         DAffine2::from_mat2_translation(DMat2::from_diagonal(DVec2::splat(self.scale)), self.offset)
     }

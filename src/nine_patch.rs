@@ -9,8 +9,9 @@ use core::f64::consts::PI;
 use glam::DVec2;
 use libm::{exp, log, log1p};
 
-use crate::density::blend::{Ink, Layout, Rgba8};
-use crate::density::{PixelOptions, rounded::Rounded};
+use crate::density::PixelOptions;
+use crate::density::blend::Rgba8;
+use crate::density::rounded::Rounded;
 use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::light::Projection;
@@ -263,7 +264,7 @@ impl NinePatch {
         paint: &Paint,
         scratch: &mut Scratch,
     ) -> Result<()> {
-        grid.check_buffer(pixels.len() / 4)?;
+        let mut canvas = PixelOptions::default().onto_rgba8(grid, pixels, paint, scratch)?;
         for axis in 0..2 {
             let extent = place.max[axis] - place.min[axis];
             let least = i64::from(self.size[axis]);
@@ -282,15 +283,6 @@ impl NinePatch {
         }
         let corner = grid.corner().floor();
         let first = [corner.x as i64, corner.y as i64];
-        let mut canvas = Rgba8 {
-            level: scratch.level(),
-            pixels,
-            layout: Layout {
-                stride: grid.stride(),
-                dither: None,
-            },
-            ink: Ink::new(paint),
-        };
         let [left, top, right, bottom] = self.insets.map(i64::from);
         let height = i64::from(grid.height());
         for row in (place.min[1] - first[1]).max(0)..(place.max[1] - first[1]).min(height) {

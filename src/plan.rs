@@ -434,15 +434,9 @@ mod tests {
                 let paint = Paint::new(color, strength).unwrap();
                 let before: Vec<u8> = (0..80 * 60 * 4_u32).map(|i| (i / 4 % 256) as u8).collect();
                 let mut after = before.clone();
-                let mut sink = crate::density::blend::Rgba8 {
-                    level: scratch.level(),
-                    pixels: &mut after,
-                    layout: crate::density::blend::Layout {
-                        stride: 80,
-                        dither: None,
-                    },
-                    ink: crate::density::blend::Ink::new(&paint),
-                };
+                let mut sink = plain
+                    .onto_rgba8(&grid, &mut after, &paint, &scratch)
+                    .unwrap();
                 crate::density::draw(&shadow, &grid, &plain, &mut scratch, &mut sink);
                 let opaque = |bytes: &[u8]| bytes.iter().step_by(4).copied().collect::<Vec<_>>();
                 assert_eq!(opaque(&before), opaque(&after), "r {radius}, {color:?}");

@@ -10,10 +10,9 @@ use std::sync::OnceLock;
 use glam::{DAffine2, DVec2};
 
 use crate::apart::overlapping;
-use crate::density::blend::{A8, Ink, Layout, Rgba8};
 use crate::density::rounded::Rounded;
-use crate::density::{self, Each, PixelOptions};
-use crate::error::{Error, Result};
+use crate::density::{self, PixelOptions};
+use crate::error::Result;
 use crate::grid::Grid;
 use crate::light::Projection;
 use crate::outline::{Edge, Fineness, Outline, Winding, resolve};
@@ -415,11 +414,9 @@ impl Shadow {
         options: &PixelOptions<'_>,
         scratch: &mut Scratch,
     ) -> Result<()> {
-        clear(grid, mask, 0)?;
-        options.check(grid)?;
+        let mut sink = options.onto_mask(grid, mask)?;
         if plan::skip(self, grid, options, Some(1.0)).is_none() {
-            let layout = options.layout(grid);
-            density::draw(self, grid, options, scratch, &mut A8 { mask, layout });
+            density::draw(self, grid, options, scratch, &mut sink);
         }
         Ok(())
     }
@@ -436,17 +433,10 @@ impl Shadow {
         options: &PixelOptions<'_>,
         scratch: &mut Scratch,
     ) -> Result<()> {
-        clear(grid, densities, 0.0)?;
-        options.check(grid)?;
-        if plan::skip(self, grid, options, None).is_some() {
-            return Ok(());
+        let mut sink = options.onto_densities(grid, densities)?;
+        if plan::skip(self, grid, options, None).is_none() {
+            density::draw(self, grid, options, scratch, &mut sink);
         }
-        let mut sink = Each {
-            pixels: densities,
-            stride: grid.stride(),
-            put: |pixel: &mut f32, density: f32| *pixel = (*pixel + density).min(1.0),
-        };
-        density::draw(self, grid, options, scratch, &mut sink);
         Ok(())
     }
 
@@ -463,46 +453,11 @@ impl Shadow {
         options: &PixelOptions<'_>,
         scratch: &mut Scratch,
     ) -> Result<()> {
-        grid.check_buffer(pixels.len() / 4)?;
-        options.check(grid)?;
-        if plan::skip(self, grid, options, Some(paint.opacity())).is_some() {
-            return Ok(());
+        let mut sink = options.onto_rgba8(grid, pixels, paint, scratch)?;
+        if plan::skip(self, grid, options, Some(paint.opacity())).is_none() {
+            density::draw(self, grid, options, scratch, &mut sink);
         }
-        let mut sink = Rgba8 {
-            level: scratch.level(),
-            pixels,
-            layout: options.layout(grid),
-            ink: Ink::new(paint),
-        };
-        density::draw(self, grid, options, scratch, &mut sink);
         Ok(())
-    }
-}
-
-/// Sets the grid's pixels in a buffer.
-pub(crate) fn clear<T: Copy>(grid: &Grid, buffer: &mut [T], value: T) -> Result<()> {
-    grid.check_buffer(buffer.len())?;
-    for row in 0..grid.height() as usize {
-        buffer[row * grid.stride()..][..grid.width() as usize].fill(value);
-    }
-    Ok(())
-}
-
-impl PixelOptions<'_> {
-    pub(crate) fn check(&self, grid: &Grid) -> Result<()> {
-        match self.hidden {
-            Some(hidden) if !hidden.grid().has_pixels_of(grid) => Err(Error::OtherGrid {
-                field: "options.hidden",
-            }),
-            _ => Ok(()),
-        }
-    }
-
-    pub(crate) fn layout(&self, grid: &Grid) -> Layout {
-        Layout {
-            stride: grid.stride(),
-            dither: self.dither.then(|| grid.pattern()),
-        }
     }
 }
 

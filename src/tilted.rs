@@ -7,15 +7,14 @@ use core::ops::Range;
 
 use glam::{DVec2, DVec3};
 
-use crate::density::blend::{A8, Ink, Rgba8};
-use crate::density::{Each, PixelOptions, tilted};
+use crate::density::{PixelOptions, tilted};
 use crate::error::{MAX_COORDINATE, Result};
 use crate::grid::Grid;
 use crate::outline::Outline;
 use crate::paint::Paint;
 use crate::pose::Pose;
 use crate::scratch::Scratch;
-use crate::shadow::{Bounds, clear};
+use crate::shadow::Bounds;
 use crate::shape::Shape;
 
 /// How far from a curve of a tilted caster its lines may be, in scene units.
@@ -143,10 +142,8 @@ impl TiltedShadow {
     /// # Errors
     /// A buffer shorter than the grid needs, and options for another grid.
     pub fn fill_a8(&self, grid: &Grid, mask: &mut [u8], options: &PixelOptions<'_>) -> Result<()> {
-        clear(grid, mask, 0)?;
-        options.check(grid)?;
-        let layout = options.layout(grid);
-        tilted::fill(self, grid, options.hidden, &mut A8 { mask, layout });
+        let mut sink = options.onto_mask(grid, mask)?;
+        tilted::fill(self, grid, options.hidden, &mut sink);
         Ok(())
     }
 
@@ -160,13 +157,7 @@ impl TiltedShadow {
         densities: &mut [f32],
         options: &PixelOptions<'_>,
     ) -> Result<()> {
-        clear(grid, densities, 0.0)?;
-        options.check(grid)?;
-        let mut sink = Each {
-            pixels: densities,
-            stride: grid.stride(),
-            put: |pixel: &mut f32, density: f32| *pixel = density,
-        };
+        let mut sink = options.onto_densities(grid, densities)?;
         tilted::fill(self, grid, options.hidden, &mut sink);
         Ok(())
     }
@@ -183,14 +174,7 @@ impl TiltedShadow {
         options: &PixelOptions<'_>,
         scratch: &mut Scratch,
     ) -> Result<()> {
-        grid.check_buffer(pixels.len() / 4)?;
-        options.check(grid)?;
-        let mut sink = Rgba8 {
-            level: scratch.level(),
-            pixels,
-            layout: options.layout(grid),
-            ink: Ink::new(paint),
-        };
+        let mut sink = options.onto_rgba8(grid, pixels, paint, scratch)?;
         tilted::fill(self, grid, options.hidden, &mut sink);
         Ok(())
     }

@@ -2,9 +2,13 @@
 
 #![expect(clippy::unwrap_used, reason = "a scene that is refused fails the test")]
 
+#[expect(dead_code, reason = "other tests take more of it")]
+mod common;
+
 use std::env;
 use std::sync::Arc;
 
+use common::Random;
 use penumbral::{
     Blending, Color, Error, FillRule, Group, Image, Light, Overlap, Path, Pose, Renderer, Scene,
     Shape, Surface, Tone,
@@ -194,34 +198,13 @@ fn an_image_is_drawn_and_casts_by_its_alpha() {
     assert!(Image::from_rgba8([0, 2], Vec::new()).is_err());
 }
 
-/// Numbers from 0 to 1, the same ones every time.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f32 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 40) as f32 / (1_u64 << 24) as f32
-    }
-
-    fn within(&mut self, low: f32, high: f32) -> f32 {
-        low + (high - low) * self.next()
-    }
-
-    fn below(&mut self, end: usize) -> usize {
-        (self.next() * end as f32) as usize
-    }
-}
-
 fn any_surface(random: &mut Random, canvas: [f32; 2]) -> Surface {
     let (x, y) = (
-        random.within(-20.0, canvas[0]),
-        random.within(-20.0, canvas[1]),
+        random.between(-20.0, canvas[0]),
+        random.between(-20.0, canvas[1]),
     );
-    let (w, h) = (random.within(4.0, 60.0), random.within(4.0, 60.0));
-    let elevation = [0.0, 1.0, 2.5, 2.5, 6.0, random.within(0.5, 20.0)][random.below(6)];
+    let (w, h) = (random.between(4.0, 60.0), random.between(4.0, 60.0));
+    let elevation = [0.0, 1.0, 2.5, 2.5, 6.0, random.between(0.5, 20.0)][random.below(6)];
     let shape = match random.below(5) {
         0 => rect(x, y, w, h),
         1 => Shape::circle([x, y], w / 2.0).unwrap(),
@@ -241,8 +224,8 @@ fn any_surface(random: &mut Random, canvas: [f32; 2]) -> Surface {
     };
     let color = Color::rgb(random.below(256) as u8, random.below(256) as u8, 80);
     if random.below(9) == 0 {
-        let axis = [random.within(-1.0, 1.0), 1.0];
-        let pose = Pose::turned(elevation + 8.0, [x, y], axis, random.within(0.0, 3.0)).unwrap();
+        let axis = [random.between(-1.0, 1.0), 1.0];
+        let pose = Pose::turned(elevation + 8.0, [x, y], axis, random.between(0.0, 3.0)).unwrap();
         return Surface::posed(shape, &pose).with_fill(color);
     }
     let opacity = if random.below(4) == 0 { 0.6 } else { 1.0 };
@@ -263,7 +246,7 @@ fn scene_of(surfaces: &[Surface]) -> Scene {
 #[test]
 fn what_is_drawn_again_in_part_is_what_is_drawn_afresh() {
     let edits = env::var("PENUMBRAL_EDITS").map_or(25, |count| count.parse().unwrap());
-    let mut random = Random(11);
+    let mut random = Random::new(11);
     let mut surfaces: Vec<Surface> = (0..12).map(|_| any_surface(&mut random, CANVAS)).collect();
     let mut before = scene_of(&surfaces);
     let mut picture = drawn(&before);

@@ -15,7 +15,7 @@ impl Scene {
     ///
     /// # Errors
     /// None that the constructors let pass.
-    pub fn damage_since(&self, before: &Self) -> Result<Vec<Bounds>> {
+    pub fn damage_since<'s>(&'s self, before: &'s Self) -> Result<Vec<Bounds>> {
         let canvas = (DVec2::ZERO, DVec2::from(self.canvas().map(f64::from)));
         if !self.is_lit_as(before) {
             return Ok(vec![Bounds::outwards(canvas.0, canvas.1)]);
@@ -39,35 +39,26 @@ impl Scene {
         };
         let mut boxes = Vec::new();
         for (source, _) in Source::of(self) {
-            let reach = |surface: &Surface| -> Result<Option<(DVec2, DVec2)>> {
-                let reach = source.reach(surface)?;
-                Ok(reach.map(|(min, max)| self.on_pixels(min, max)))
+            let boxed = |surface: &&'s Surface| {
+                let reach = source.reach(surface).transpose()?;
+                Some(reach.map(|(min, max)| (*surface, self.on_pixels(min, max))))
             };
             // Casters that are drawn as one are drawn anew together, though what changes is less than the tolerance.
-            let mut drawn = changed.clone();
-            let mut rest: Vec<&Surface> = self.surfaces().iter().chain(before.surfaces()).collect();
-            rest.retain(|surface| surface.is_united());
-            while let Some(surface) = drawn.pop() {
-                let Some((min, max)) = reach(surface)? else {
-                    continue;
-                };
+            let all = self.surfaces().iter().chain(before.surfaces());
+            let united = all.filter(|surface| surface.is_united());
+            let mut rest: Vec<_> = united
+                .filter_map(|surface| boxed(&surface))
+                .collect::<Result<_>>()?;
+            let mut drawn: Vec<_> = changed.iter().filter_map(boxed).collect::<Result<_>>()?;
+            while let Some((surface, (min, max))) = drawn.pop() {
                 boxes.push((min, max));
-                if !surface.is_united() {
-                    continue;
+                if surface.is_united() {
+                    drawn.extend(rest.extract_if(.., |(other, (other_min, other_max))| {
+                        other.elevation() == surface.elevation()
+                            && other_min.cmple(max).all()
+                            && other_max.cmpge(min).all()
+                    }));
                 }
-                let mut kept = Vec::with_capacity(rest.len());
-                for other in rest {
-                    let meets = other.elevation() == surface.elevation()
-                        && reach(other)?.is_some_and(|(other_min, other_max)| {
-                            other_min.cmple(max).all() && other_max.cmpge(min).all()
-                        });
-                    if meets {
-                        drawn.push(other);
-                    } else {
-                        kept.push(other);
-                    }
-                }
-                rest = kept;
             }
         }
         for surface in changed {

@@ -3,13 +3,12 @@
 use super::caster::Cast;
 use super::fusion::{self, groups};
 use super::{Receiver, Stage};
-use crate::density::blend::{Ink, Rgba8};
 use crate::density::{Each, PixelOptions};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::hidden::Hidden;
 use crate::paint::Paint;
-use crate::scene::{Form, Scene};
+use crate::scene::Scene;
 use crate::scratch::Scratch;
 use crate::shape::Shape;
 use crate::tone::Color;
@@ -86,7 +85,7 @@ impl GroundShadows<'_> {
             .scene
             .surfaces()
             .iter()
-            .filter(|surface| surface.is_opaque() && matches!(surface.form(), Form::Level));
+            .filter(|surface| surface.is_united());
         hidden.reset(&self.grid);
         hidden.add_all(opaque.map(|surface| -> &Shape { surface.shape() }), scratch);
     }
@@ -118,20 +117,14 @@ impl GroundShadows<'_> {
         scratch: &mut Scratch,
     ) -> Result<()> {
         let tone = self.scene.tone();
-        self.grid.check_buffer(pixels.len() / 4)?;
-        options.check(&self.grid)?;
         for group in groups(&self.casts, self.scene.overlap()) {
             // Alone, a cast needs no density between its method and the pixels.
             let weight = match group.as_slice() {
                 [alone] => alone.weight() as f32,
                 _ => 1.0,
             };
-            let mut sink = Rgba8 {
-                level: scratch.level(),
-                pixels,
-                layout: options.layout(&self.grid),
-                ink: Ink::new(&Paint::new(opaque(tone.color()), tone.key() * weight)?),
-            };
+            let paint = Paint::new(opaque(tone.color()), tone.key() * weight)?;
+            let mut sink = options.onto_rgba8(&self.grid, pixels, &paint, scratch)?;
             match group.as_slice() {
                 [alone] => alone.shadow.draw(&self.grid, options, scratch, &mut sink),
                 _ => fusion::draw(&group, &self.grid, options, scratch, &mut sink),

@@ -75,6 +75,14 @@ impl Window {
     }
 }
 
+/// A scene that is drawn, and what of it all its layers need.
+struct Job<'a> {
+    scene: &'a Scene,
+    stage: Stage<'a>,
+    grid: Grid,
+    mixer: Mixer,
+}
+
 impl Renderer {
     /// A renderer without memory yet.
     #[must_use]
@@ -138,14 +146,14 @@ impl Renderer {
         pixmap: &mut Pixmap,
         mut goes_on: impl FnMut(usize, usize) -> bool,
     ) -> Result<()> {
-        let grid = scene.grid()?;
-        let stage = Stage::new(scene)?;
+        let job = self.begin(scene, pixmap)?;
+        let grid = &job.grid;
         let rows = (BAND / grid.width()).max(1);
         let bands = grid.height().div_ceil(rows) as usize;
         for (band, first) in (0..grid.height()).step_by(rows as usize).enumerate() {
             let end = grid.height().min(first + rows);
-            let window = Window::new(&grid, 0..grid.width(), first..end);
-            self.draw(scene, &stage, &window, pixmap, |done, layers| {
+            let window = Window::new(grid, 0..grid.width(), first..end);
+            self.draw(&job, &window, pixmap, |done, layers| {
                 if goes_on(band * layers + done, bands * layers) {
                     Ok(())
                 } else {
@@ -184,9 +192,9 @@ impl Renderer {
         boxes: &[Bounds],
         pixmap: &mut Pixmap,
     ) -> Result<()> {
-        let grid = scene.grid()?;
+        let job = self.begin(scene, pixmap)?;
+        let grid = &job.grid;
         let scale = grid.pixels_per_unit();
-        let stage = Stage::new(scene)?;
         for bounds in boxes {
             let [columns, rows] = [0, 1].map(|axis| {
                 let end = f64::from([grid.width(), grid.height()][axis]);
@@ -196,21 +204,15 @@ impl Renderer {
                 pixel(bounds.min[axis], f64::floor)..pixel(bounds.max[axis], f64::ceil)
             });
             if !columns.is_empty() && !rows.is_empty() {
-                let window = Window::new(&grid, columns, rows);
-                self.draw(scene, &stage, &window, pixmap, |_, _| Ok(()))?;
+                let window = Window::new(grid, columns, rows);
+                self.draw(&job, &window, pixmap, |_, _| Ok(()))?;
             }
         }
         Ok(())
     }
 
-    fn draw(
-        &mut self,
-        scene: &Scene,
-        stage: &Stage<'_>,
-        window: &Window,
-        pixmap: &mut Pixmap,
-        mut progress: impl FnMut(usize, usize) -> Result<()>,
-    ) -> Result<()> {
+    /// Refuses what is over the limits or has no place on the pixmap.
+    fn begin<'a>(&self, scene: &'a Scene, pixmap: &Pixmap) -> Result<Job<'a>> {
         self.limits.check(scene)?;
         let grid = scene.grid()?;
         if (pixmap.width(), pixmap.height()) != (grid.width(), grid.height()) {
@@ -219,6 +221,22 @@ impl Renderer {
                 needed: grid.width() as usize * grid.height() as usize,
             });
         }
+        Ok(Job {
+            scene,
+            stage: Stage::new(scene)?,
+            grid,
+            mixer: Mixer::new(&scene.tone()),
+        })
+    }
+
+    fn draw(
+        &mut self,
+        job: &Job<'_>,
+        window: &Window,
+        pixmap: &mut Pixmap,
+        mut progress: impl FnMut(usize, usize) -> Result<()>,
+    ) -> Result<()> {
+        let Job { scene, stage, .. } = job;
         let layers = stage.order.len() + 1;
         self.find_topmost(stage, window);
         let ground = Layer {
@@ -233,14 +251,14 @@ impl Renderer {
         self.cover.clear();
         self.cover.resize(self.topmost.len(), 1.0);
         if self.is_visible(&ground, window) {
-            self.draw_layer(scene, stage, &ground, window, pixmap)?;
+            self.draw_layer(job, &ground, window, pixmap)?;
         }
         progress(1, layers)?;
         for (index, &surface) in stage.order.iter().enumerate() {
             let layer = layer(scene, surface, index as u32 + 1, window)?;
             if let Some(layer) = layer.filter(|layer| self.is_visible(layer, window)) {
                 self.find_cover(surface, &layer);
-                self.draw_layer(scene, stage, &layer, window, pixmap)?;
+                self.draw_layer(job, &layer, window, pixmap)?;
             }
             progress(index + 2, layers)?;
         }
@@ -308,14 +326,12 @@ impl Renderer {
 
     fn draw_layer(
         &mut self,
-        scene: &Scene,
-        stage: &Stage<'_>,
+        job: &Job<'_>,
         layer: &Layer,
         window: &Window,
         pixmap: &mut Pixmap,
     ) -> Result<()> {
-        self.find_passed(scene, stage, layer, window)?;
-        let mixer = Mixer::new(&scene.tone());
+        self.find_passed(job, layer, window)?;
         let stride = pixmap.width() as usize;
         let pixels = pixmap.pixels_mut();
         let [left, top] = layer.first.map(|first| first as usize);
@@ -341,7 +357,7 @@ impl Renderer {
                 };
                 let pixel = &mut pixels[start + column];
                 let below = [pixel.red(), pixel.green(), pixel.blue()];
-                let [r, g, b] = mixer.mixed(fill, below, self.passed[index], alpha);
+                let [r, g, b] = job.mixer.mixed(fill, below, self.passed[index], alpha);
                 *pixel = ColorU8::from_rgba(r, g, b, 255).premultiply();
             }
         }
@@ -349,13 +365,7 @@ impl Renderer {
     }
 
     /// Finds what the casters above let pass to each pixel of the layer.
-    fn find_passed(
-        &mut self,
-        scene: &Scene,
-        stage: &Stage<'_>,
-        layer: &Layer,
-        window: &Window,
-    ) -> Result<()> {
+    fn find_passed(&mut self, job: &Job<'_>, layer: &Layer, window: &Window) -> Result<()> {
         self.passed.clear();
         self.passed.resize(
             layer.grid.width() as usize * layer.grid.height() as usize,
@@ -369,13 +379,13 @@ impl Renderer {
             hidden: Some(&hidden),
             ..PixelOptions::default()
         };
-        for (strength, casts) in stage.casts(&layer.receiver)? {
+        for (strength, casts) in job.stage.casts(&layer.receiver)? {
             let mut sink = Each {
                 pixels: &mut self.passed,
                 stride: layer.grid.width() as usize,
                 put: |passed: &mut f32, held: f32| *passed *= 1.0 - strength * held,
             };
-            for group in groups(&casts, scene.overlap()) {
+            for group in groups(&casts, job.scene.overlap()) {
                 fusion::draw(&group, &layer.grid, &options, &mut self.scratch, &mut sink);
             }
         }

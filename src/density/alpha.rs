@@ -3,10 +3,8 @@
 //! Sums of alpha along each row of texels make a chord's share two look-ups. The chords are those of Gauss points between the
 //! edges of the rows, which are where alpha jumps: for texels of one alpha the rest is smooth.
 
-use core::f64::consts::{FRAC_1_PI, FRAC_PI_2};
-
 use glam::DVec2;
-use libm::{asin, cos, sin};
+use libm::{asin, sin};
 
 use super::{Sink, averaged_side, quadrature};
 use crate::grid::Grid;
@@ -16,12 +14,6 @@ use crate::light::Projection;
 
 /// Into so many equal angles the disc's height is cut, besides at rows of texels.
 const PIECES: u32 = 24;
-
-/// Two nodes of the Gauss-Legendre rule a piece, from -1 to 1 (Abramowitz & Stegun 1964, table 25.4).
-const GAUSS_2: f64 = 0.577_350_269_189_625_8;
-
-/// Below this radius in pixels the alpha under pixels is averaged over the disc, from there on the density over the pixel.
-const COVERAGE_RADIUS: f64 = 0.5;
 
 /// The shadow of an image on one receiver.
 #[derive(Debug, Clone)]
@@ -94,7 +86,7 @@ impl AlphaShadow {
                 (grid.corner() + DVec2::new(f64::from(column) + 0.5, f64::from(row) + 0.5)) / scale
             };
             densities.fill(0.0);
-            if self.radius * scale < COVERAGE_RADIUS {
+            if self.radius * scale < quadrature::COVERAGE_RADIUS {
                 for (column, density) in columns.clone().zip(&mut densities) {
                     let middle = middle(column);
                     let average = quadrature::disc().map(|(light, weight)| {
@@ -133,9 +125,7 @@ impl AlphaShadow {
         let row_at = |y: f64| (y - self.place.min.y) / texel;
         let angles = &mut chords.angles;
         angles.clear();
-        angles.extend(
-            (0..=PIECES).map(|i| FRAC_PI_2 * (2.0 * f64::from(i) / f64::from(PIECES) - 1.0)),
-        );
+        angles.extend((0..=PIECES).map(|piece| quadrature::angle(piece, PIECES)));
         let last = self.size[1] as f64;
         let first_row = row_at(y - self.radius).ceil().clamp(0.0, last) as usize;
         let last_row = row_at(y + self.radius).floor().clamp(0.0, last) as usize;
@@ -154,13 +144,12 @@ impl AlphaShadow {
             if half < 1e-9 || row < 0.0 || row >= last {
                 continue;
             }
-            for angle in [middle - GAUSS_2 * half, middle + GAUSS_2 * half] {
-                chords.chords.push(Chord {
-                    row: row as usize,
-                    half: self.radius * cos(angle),
-                    weight: half * cos(angle) * FRAC_1_PI / self.radius,
-                });
-            }
+            let between = quadrature::chords_between(piece[0], piece[1]);
+            chords.chords.extend(between.map(|chord| Chord {
+                row: row as usize,
+                half: self.radius * chord.half,
+                weight: chord.weight / self.radius,
+            }));
         }
     }
 

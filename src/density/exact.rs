@@ -22,10 +22,6 @@ pub(crate) const AVERAGED: f64 = 0.12;
 /// The side of the smallest tiles, in pixels: smaller ones cut more than they save.
 const LEAF: i64 = 8;
 
-/// Below this penumbra radius in pixels the coverage of pixels is averaged over the disc, from there on the density over
-/// the pixel: each the smoother function of the two, as the disc or the pixel is the larger.
-const COVERAGE_RADIUS: f64 = 0.5;
-
 /// Gives `sink` the density of every pixel of the grid that is in the shadow and not hidden.
 pub(crate) fn fill(
     shadow: &Shadow,
@@ -136,7 +132,7 @@ impl Painter<'_> {
             f64::from(u8::from(winds_round(&near)))
         } else if self.radius == 0.0 {
             covered(&near)
-        } else if self.radius < COVERAGE_RADIUS {
+        } else if self.radius < quadrature::COVERAGE_RADIUS {
             self.averaged_coverage(center, &near)
         } else {
             quadrature::square(self.radius)

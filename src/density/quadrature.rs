@@ -1,9 +1,16 @@
 //! The points at which averages over a square and over a disc are taken.
 
-use core::f64::consts::TAU;
+use core::f64::consts::{FRAC_1_PI, FRAC_PI_2, TAU};
 
 use glam::DVec2;
 use libm::{cos, sin, sqrt};
+
+/// Below this penumbra radius in pixels the coverage of pixels is averaged over the disc, from there on the density over
+/// the pixel: each the smoother function of the two, as the disc or the pixel is the larger.
+pub(crate) const COVERAGE_RADIUS: f64 = 0.5;
+
+/// The positive node of the Gauss-Legendre rule with 2 points on -1 to 1, whose weights are 1.
+const GAUSS_2: f64 = 0.577_350_269_189_625_8;
 
 /// Nodes and weights of the Gauss-Legendre rules with 4, 8 and 12 points on -1 to 1, the positive half (Abramowitz &
 /// Stegun 1964, table 25.4).
@@ -59,6 +66,33 @@ pub(crate) fn disc() -> impl Iterator<Item = (DVec2, f64)> {
                 weight / f64::from(TURN),
             )
         })
+    })
+}
+
+/// A chord of the unit disc: its height from the middle, half its length, and what a unit of it stands for of the disc's area.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Chord {
+    pub(crate) height: f64,
+    pub(crate) half: f64,
+    pub(crate) weight: f64,
+}
+
+/// Where one of `count` equal pieces of the disc's height, as an angle from the middle, begins.
+pub(crate) fn angle(piece: u32, count: u32) -> f64 {
+    FRAC_PI_2 * (2.0 * f64::from(piece) / f64::from(count) - 1.0)
+}
+
+/// The two chords that stand for the disc between two heights, given as angles: by angle chords of the disc are smooth to
+/// its very ends.
+pub(crate) fn chords_between(from: f64, to: f64) -> [Chord; 2] {
+    let half = (to - from) / 2.0;
+    [-GAUSS_2, GAUSS_2].map(|node| {
+        let angle = from + half + node * half;
+        Chord {
+            height: sin(angle),
+            half: cos(angle),
+            weight: half * cos(angle) * FRAC_1_PI,
+        }
     })
 }
 

@@ -427,90 +427,43 @@ impl Stroke<'_> {
             Some(wide) => self.piece.seen_widely(seen, self.lattice, wide),
             None => self.piece.seen_from(seen, self.lattice, self.halves),
         };
+        // A closure of its own for each kernel, or they would not be one loop with it.
+        macro_rules! add {
+            ($kernel:expr) => {
+                simd.vectorize(
+                    #[inline(always)]
+                    || self.add(simd, offset, values, $kernel),
+                )
+            };
+        }
         match form {
-            RowForm::WideLine(line) => simd.vectorize(
+            RowForm::WideLine(line) => add!(
                 #[inline(always)]
-                || {
-                    self.add(
-                        simd,
-                        offset,
-                        values,
-                        #[inline(always)]
-                        |columns| kernels::wide_line(simd, columns, &line),
-                    );
-                },
+                |columns| kernels::wide_line(simd, columns, &line)
             ),
-            RowForm::WideArc(arc) => simd.vectorize(
+            RowForm::WideArc(arc) => add!(
                 #[inline(always)]
-                || {
-                    self.add(
-                        simd,
-                        offset,
-                        values,
-                        #[inline(always)]
-                        |columns| kernels::wide_arc(simd, columns, &arc),
-                    );
-                },
+                |columns| kernels::wide_arc(simd, columns, &arc)
             ),
-            RowForm::ThroughLine(distance) => simd.vectorize(
+            RowForm::ThroughLine(distance) => add!(
                 #[inline(always)]
-                || {
-                    self.add(
-                        simd,
-                        offset,
-                        values,
-                        #[inline(always)]
-                        |columns| kernels::through_line(simd, columns, distance),
-                    );
-                },
+                |columns| kernels::through_line(simd, columns, distance)
             ),
-            RowForm::Line(line) => simd.vectorize(
+            RowForm::Line(line) => add!(
                 #[inline(always)]
-                || {
-                    self.add(
-                        simd,
-                        offset,
-                        values,
-                        #[inline(always)]
-                        |columns| kernels::line(simd, columns, &line),
-                    );
-                },
+                |columns| kernels::line(simd, columns, &line)
             ),
-            RowForm::ThroughArc(arc) => simd.vectorize(
+            RowForm::ThroughArc(arc) => add!(
                 #[inline(always)]
-                || {
-                    self.add(
-                        simd,
-                        offset,
-                        values,
-                        #[inline(always)]
-                        |columns| kernels::through_arc(simd, columns, &arc),
-                    );
-                },
+                |columns| kernels::through_arc(simd, columns, &arc)
             ),
-            RowForm::Arc(arc) => simd.vectorize(
+            RowForm::Arc(arc) => add!(
                 #[inline(always)]
-                || {
-                    self.add(
-                        simd,
-                        offset,
-                        values,
-                        #[inline(always)]
-                        |columns| kernels::arc(simd, columns, &arc),
-                    );
-                },
+                |columns| kernels::arc(simd, columns, &arc)
             ),
-            RowForm::Cut(cut) => simd.vectorize(
+            RowForm::Cut(cut) => add!(
                 #[inline(always)]
-                || {
-                    self.add(
-                        simd,
-                        offset,
-                        values,
-                        #[inline(always)]
-                        |columns| kernels::cut(simd, columns, &cut),
-                    );
-                },
+                |columns| kernels::cut(simd, columns, &cut)
             ),
         }
     }

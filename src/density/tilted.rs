@@ -18,9 +18,6 @@ use crate::tilted::{Circle, TiltedShadow};
 /// The side of a tile, in pixels.
 const TILE: i64 = 16;
 
-/// Below this radius in pixels the coverage of pixels is averaged over the disc, from there on the density over the pixel.
-const COVERAGE_RADIUS: f64 = 0.5;
-
 /// The fraction of the light's disc that loops hide from a point.
 pub(crate) fn at_point(loops: &[Vec<Circle>], point: DVec2) -> f64 {
     let double_area: f64 = loops
@@ -211,7 +208,7 @@ impl Painter {
         if side == 0.0 {
             return self.at_point(middle);
         }
-        if radius < COVERAGE_RADIUS {
+        if radius < quadrature::COVERAGE_RADIUS {
             return quadrature::disc()
                 .map(|(light, weight)| weight * self.coverage(middle, light))
                 .sum();

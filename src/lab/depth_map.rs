@@ -60,14 +60,7 @@ impl<'a> DepthView<'a> {
     /// texels, `scale` a unit.
     #[must_use]
     pub fn new(stage: &'a Stage, origin: [f64; 2], size: [usize; 2], scale: f64) -> Self {
-        let texels = Texels {
-            light: DVec3::from_array(stage.light()),
-            origin: origin.into(),
-            scale,
-            width: size[0],
-            height: size[1],
-        };
-        Self::seen(texels, &stage.triangles)
+        Self::seen(Texels::of(stage, origin, size, scale), &stage.triangles)
     }
 
     fn seen(texels: Texels, triangles: &'a [[DVec3; 3]]) -> Self {

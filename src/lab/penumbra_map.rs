@@ -12,7 +12,7 @@
 use glam::{DVec2, DVec3};
 use libm::{exp, sqrt};
 
-use super::image::Card;
+use super::card::Card;
 use super::plane::Plane;
 use super::{Claim, Family, Parameter, Technique};
 use crate::error::{self, Result};
@@ -422,10 +422,10 @@ impl Technique for PenumbraMap {
 #[cfg(test)]
 mod tests {
     use super::super::Errors;
-    use super::super::image::Image;
     use super::super::rays::{number, stratified};
     use super::super::tests::{card, errors};
     use super::*;
+    use crate::image::Image;
 
     fn map(kernel: Kernel, region: Region) -> PenumbraMap {
         PenumbraMap::new(kernel, region, 1.0).unwrap()
@@ -458,8 +458,8 @@ mod tests {
             let d = DVec2::new(f64::from(i % 64), f64::from(i / 64)) - 31.5;
             (255.0 * (1.5 - d.length() / 20.0).clamp(0.0, 1.0)) as u8
         };
-        let pixels = (0..64 * 64).map(|i| [200, 30, 30, alpha(i)]).collect();
-        Image::new([64, 64], pixels).unwrap()
+        let pixels = (0..64 * 64).flat_map(|i| [200, 30, 30, alpha(i)]);
+        Image::from_rgba8([64, 64], pixels.collect()).unwrap()
     }
 
     /// The mean over the lights, each at `places` of its disc, of what `hidden` says of a point and a light's point.
@@ -538,7 +538,7 @@ mod tests {
     #[test]
     fn a_long_and_a_square_light_are_several_discs() {
         let grid = Grid::new([0.0, 0.0], [100, 100], 1.0).unwrap();
-        let solid = Image::new([1, 1], vec![[0, 0, 0, 255]]).unwrap();
+        let solid = Image::from_rgba8([1, 1], vec![0, 0, 0, 255]).unwrap();
         let card = Card::new(
             solid,
             [30.0, 30.0, 25.0],

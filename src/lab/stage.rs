@@ -101,6 +101,18 @@ pub(super) struct Seen {
 }
 
 impl Texels {
+    /// What the light's centre sees of a stage through the receiver's square from `origin` on, by `size` (columns, rows) of
+    /// texels, `scale` a unit.
+    pub(super) fn of(stage: &Stage, origin: [f64; 2], size: [usize; 2], scale: f64) -> Self {
+        Self {
+            light: DVec3::from_array(stage.light()),
+            origin: origin.into(),
+            scale,
+            width: size[0],
+            height: size[1],
+        }
+    }
+
     /// Texels over all of the grid, in its pixels, and two more on every side.
     pub(super) fn over(grid: &Grid, light: DVec3, scale: f64) -> Self {
         let side = |pixels: u32| (f64::from(pixels) * scale).ceil() as usize + 4;

@@ -51,13 +51,7 @@ impl ZView {
     /// texels, `scale` a unit.
     #[must_use]
     pub fn new(stage: &Stage, origin: [f64; 2], size: [usize; 2], scale: f64, bias: f64) -> Self {
-        let texels = Texels {
-            light: DVec3::from_array(stage.light()),
-            origin: origin.into(),
-            scale,
-            width: size[0],
-            height: size[1],
-        };
+        let texels = Texels::of(stage, origin, size, scale);
         Self::seen(texels, &stage.triangles, bias)
     }
 

@@ -4,7 +4,7 @@
 use glam::DVec2;
 
 use super::{MeshVertex, ShadowMesh};
-use crate::density::{Each, Sink};
+use crate::density::{Each, Sink, clear};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::hidden::Hidden;
@@ -65,10 +65,7 @@ impl ShadowMesh {
     /// # Errors
     /// [`Error::BufferSize`](crate::Error::BufferSize) when `densities` is shorter than the grid needs.
     pub fn rasterize(&self, grid: &Grid, densities: &mut [f32]) -> Result<()> {
-        grid.check_buffer(densities.len())?;
-        for row in 0..grid.height() as usize {
-            densities[row * grid.stride()..][..grid.width() as usize].fill(0.0);
-        }
+        clear(grid, densities, 0.0)?;
         let mut sink = Each {
             pixels: densities,
             stride: grid.stride(),

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use crate::error::{Error, Result};
 use crate::image::{Image, Place};
@@ -173,28 +173,25 @@ impl Surface {
 
     /// The box of the surface as it is seen from above, scene units.
     pub(crate) fn hull(&self) -> Option<(DVec2, DVec2)> {
-        let (min, max) = self.shape.hull()?;
-        let Form::Posed(pose) = &self.form else {
-            return Some((min, max));
-        };
-        let corners = [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)];
-        let seen = corners.map(|corner| pose.place(corner).truncate());
-        let [a, b, c, d] = seen;
-        Some((a.min(b).min(c).min(d), a.max(b).max(c).max(d)))
+        let corners = self.corners()?.map(DVec3::truncate);
+        let over = |other: fn(DVec2, DVec2) -> DVec2| corners.into_iter().reduce(other);
+        Some((over(DVec2::min)?, over(DVec2::max)?))
     }
 
     /// The elevation of its highest corner.
     pub(crate) fn highest(&self) -> f64 {
-        match (&self.form, self.shape.hull()) {
-            (Form::Posed(pose), Some((min, max))) => {
-                let corners = [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)];
-                corners
-                    .map(|corner| pose.place(corner).z)
-                    .into_iter()
-                    .fold(f64::MIN, f64::max)
-            }
-            _ => f64::from(self.elevation),
-        }
+        let corners = self.corners().into_iter().flatten();
+        corners.map(|corner| corner.z).fold(f64::MIN, f64::max)
+    }
+
+    /// Where the corners of a box round the shape are.
+    fn corners(&self) -> Option<[DVec3; 4]> {
+        let (min, max) = self.shape.hull()?;
+        let corners = [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)];
+        Some(corners.map(|corner| match &self.form {
+            Form::Posed(pose) => pose.place(corner),
+            Form::Level | Form::Image(..) => corner.extend(f64::from(self.elevation)),
+        }))
     }
 
     /// The surface's own coverage as it is seen from above: its hard shadow on itself.

@@ -4,13 +4,13 @@
 //! level chord of the disc at height v lies on the line y = p.y + r v of the caster's receiver, and is hidden between the
 //! outline's crossings with that line. Crossings of a row of pixels are found once; along the row only their distances change.
 
-use core::f64::consts::{FRAC_1_PI, FRAC_PI_2};
 use core::ops::Range;
 
 use fearless_simd::{Level, Simd, dispatch};
 use glam::DVec2;
-use libm::{asin, cos, sin};
+use libm::asin;
 
+use crate::density::quadrature;
 use crate::tilted::Circle;
 
 /// At most so many pixels of a row are worked on together.
@@ -18,9 +18,6 @@ pub(super) const BLOCK: usize = 32;
 
 /// Into so many equal angles the disc's height is cut, and again wherever an outline has a top, a bottom or a level edge.
 const PIECES: u32 = 12;
-
-/// Two nodes of the Gauss-Legendre rule a piece, from -1 to 1 (Abramowitz & Stegun 1964, table 25.4).
-const GAUSS_2: f64 = 0.577_350_269_189_625_8;
 
 /// One caster as its chords need it. Each of its loops has an origin of its own, a whole pixel: what a pixel is given depends
 /// neither on what else there is nor on the grid that shows it.
@@ -259,13 +256,21 @@ impl Chords {
         }
         turns.sort_by(f64::total_cmp);
         if self.pieces.is_empty() {
-            let piece = |index: u32| nodes(angle(index), angle(index + 1));
+            let piece = |index: u32| {
+                nodes(
+                    quadrature::angle(index, PIECES),
+                    quadrature::angle(index + 1, PIECES),
+                )
+            };
             self.pieces = (0..PIECES).map(piece).collect();
         }
         self.nodes.clear();
         let mut turns = turns.iter().copied().peekable();
         for (index, whole) in (0..PIECES).zip(&self.pieces) {
-            let (mut from, to) = (angle(index), angle(index + 1));
+            let (mut from, to) = (
+                quadrature::angle(index, PIECES),
+                quadrature::angle(index + 1, PIECES),
+            );
             if turns.peek().is_none_or(|&turn| turn >= to) {
                 self.nodes.extend(whole);
                 continue;
@@ -365,21 +370,12 @@ impl Chords {
     }
 }
 
-/// Where a piece of the disc's height begins, as an angle.
-fn angle(piece: u32) -> f64 {
-    FRAC_PI_2 * (2.0 * f64::from(piece) / f64::from(PIECES) - 1.0)
-}
-
 /// The nodes between two angles.
 fn nodes(from: f64, to: f64) -> [Node; 2] {
-    let half = (to - from) / 2.0;
-    [-GAUSS_2, GAUSS_2].map(|node| {
-        let angle = from + half + node * half;
-        Node {
-            height: sin(angle),
-            half: cos(angle) as f32,
-            weight: (half * cos(angle) * FRAC_1_PI) as f32,
-        }
+    quadrature::chords_between(from, to).map(|chord| Node {
+        height: chord.height,
+        half: chord.half as f32,
+        weight: chord.weight as f32,
     })
 }
 

@@ -23,7 +23,6 @@ pub(super) enum Kind {
 
 impl Member {
     pub(super) fn new(cast: &Cast, scale: f64) -> Option<Self> {
-        cast.shadow.reach(scale)?;
         let kind = match &cast.shadow {
             AnyShadow::Level(shadow) => {
                 let radius = shadow.radius();

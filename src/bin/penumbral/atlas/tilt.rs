@@ -1,8 +1,8 @@
 //! A card that turns until it passes the light's plane: the closed form on pixels and the penumbra map, against the closed form
 //! at points.
 
-use penumbral::lab::{Card, DiscLight, Errors, Family, Image, Kernel, PenumbraMap, Region};
-use penumbral::{Grid, Light, PixelOptions, Pose, Result, Shape};
+use penumbral::lab::{Card, DiscLight, Errors, Family, Kernel, PenumbraMap, Region};
+use penumbral::{Grid, Image, Light, PixelOptions, Pose, Result, Shape};
 
 use super::families::Own;
 
@@ -46,7 +46,7 @@ pub(super) fn measure(degrees: f64) -> Result<Vec<Own>> {
         promised_levels: Some(1.0),
     };
 
-    let solid = Image::new([1, 1], vec![[0, 0, 0, 255]])?;
+    let solid = Image::from_rgba8([1, 1], vec![0, 0, 0, 255])?;
     let card = Card::new(
         solid,
         corner,

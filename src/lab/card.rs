@@ -2,65 +2,8 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::error::{Error, MAX_PIXELS, Result};
-
-/// Straight RGBA8 pixels, row by row. Only their alpha casts a shadow.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Image {
-    width: u32,
-    height: u32,
-    pixels: Vec<[u8; 4]>,
-}
-
-impl Image {
-    /// An image of `size` (columns, rows).
-    ///
-    /// # Errors
-    /// No pixels or more than [`MAX_PIXELS`], and another number of pixels than the size says.
-    pub fn new(size: [u32; 2], pixels: Vec<[u8; 4]>) -> Result<Self> {
-        let [width, height] = size;
-        let count = u64::from(width) * u64::from(height);
-        if count == 0 || count > MAX_PIXELS {
-            return Err(Error::PictureSize {
-                width: u64::from(width),
-                height: u64::from(height),
-            });
-        }
-        if pixels.len() as u64 != count {
-            return Err(Error::BufferSize {
-                length: pixels.len(),
-                needed: count as usize,
-            });
-        }
-        Ok(Self {
-            width,
-            height,
-            pixels,
-        })
-    }
-
-    /// The alpha at a place from 0 to 1 each way, 0 to 1: between the pixels' centres it changes evenly, outside of the image
-    /// it is 0.
-    fn alpha(&self, place: DVec2) -> f64 {
-        if !(place.cmpge(DVec2::ZERO).all() && place.cmple(DVec2::ONE).all()) {
-            return 0.0;
-        }
-        let size = DVec2::new(f64::from(self.width), f64::from(self.height));
-        let at = (place * size - 0.5).clamp(DVec2::ZERO, size - 1.0);
-        let (low, share) = (at.floor(), at - at.floor());
-        let texel = |dx: f64, dy: f64| {
-            let x = (low.x + dx).min(size.x - 1.0) as usize;
-            let y = (low.y + dy).min(size.y - 1.0) as usize;
-            f64::from(self.pixels[y * self.width as usize + x][3]) / 255.0
-        };
-        let between = |a: f64, b: f64, share: f64| a + (b - a) * share;
-        between(
-            between(texel(0.0, 0.0), texel(1.0, 0.0), share.x),
-            between(texel(0.0, 1.0), texel(1.0, 1.0), share.x),
-            share.y,
-        )
-    }
-}
+use crate::error::Result;
+use crate::image::Image;
 
 /// An image on a flat parallelogram in space, tilted as may be.
 #[derive(Debug, Clone)]
@@ -104,7 +47,7 @@ impl Card {
             self.down.cross(normal).dot(at),
             normal.cross(self.across).dot(at),
         ) / square;
-        Some((share, self.image.alpha(place)))
+        Some((share, alpha(&self.image, place)))
     }
 
     /// The part of the light that passes from `light` to `point`, 0 to 1.
@@ -117,15 +60,38 @@ impl Card {
     }
 }
 
+/// The image's alpha at a place from 0 to 1 each way, 0 to 1: between the pixels' centres it changes evenly, outside of the image
+/// it is 0.
+fn alpha(image: &Image, place: DVec2) -> f64 {
+    if !(place.cmpge(DVec2::ZERO).all() && place.cmple(DVec2::ONE).all()) {
+        return 0.0;
+    }
+    let [width, height] = image.size();
+    let size = DVec2::new(f64::from(width), f64::from(height));
+    let at = (place * size - 0.5).clamp(DVec2::ZERO, size - 1.0);
+    let (low, share) = (at.floor(), at - at.floor());
+    let texel = |dx: f64, dy: f64| {
+        let x = (low.x + dx).min(size.x - 1.0) as usize;
+        let y = (low.y + dy).min(size.y - 1.0) as usize;
+        f64::from(image.pixels()[4 * (y * width as usize + x) + 3]) / 255.0
+    };
+    let between = |a: f64, b: f64, share: f64| a + (b - a) * share;
+    between(
+        between(texel(0.0, 0.0), texel(1.0, 0.0), share.x),
+        between(texel(0.0, 1.0), texel(1.0, 1.0), share.x),
+        share.y,
+    )
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn rays_find_their_place_on_a_tilted_card() {
-        let mut pixels = vec![[0, 0, 0, 0]; 16];
-        pixels[4 + 2] = [9, 9, 9, 255];
-        let image = Image::new([4, 4], pixels).unwrap();
+        let mut pixels = vec![0; 64];
+        pixels[4 * (4 + 2)..][..4].copy_from_slice(&[9, 9, 9, 255]);
+        let image = Image::from_rgba8([4, 4], pixels).unwrap();
         let card = Card::new(image, [0.0, 0.0, 1.0], [4.0, 0.0, 2.0], [1.0, 4.0, 0.0]).unwrap();
         // The middle of the opaque pixel: 2.5 of 4 across, 1.5 of 4 down.
         let middle = card.corner + card.across * (2.5 / 4.0) + card.down * (1.5 / 4.0);
@@ -134,7 +100,7 @@ mod tests {
         assert!((share - 0.25).abs() < 1e-12 && (alpha - 1.0).abs() < 1e-12);
         let [near, far] = [middle + way, middle + way * 3.0].map(|p| p.to_array());
         assert_eq!(card.passed(near, far), 1.0);
-        assert!(Image::new([2, 2], vec![[0; 4]; 3]).is_err());
-        assert!(Image::new([0, 2], Vec::new()).is_err());
+        assert!(Image::from_rgba8([2, 2], vec![0; 12]).is_err());
+        assert!(Image::from_rgba8([0, 2], Vec::new()).is_err());
     }
 }
