@@ -398,7 +398,7 @@ impl Shadow {
     /// of one for the rounding.
     ///
     /// # Errors
-    /// [`Error::BufferSize`] when `mask` is shorter than the grid needs.
+    /// [`Error::BufferSize`](crate::Error::BufferSize) when `mask` is shorter than the grid needs.
     pub fn fill_a8(&self, grid: &Grid, mask: &mut [u8], scratch: &mut Scratch) -> Result<()> {
         self.fill_a8_with(grid, mask, &PixelOptions::default(), scratch)
     }
@@ -425,7 +425,8 @@ impl Shadow {
     /// is. Hidden pixels are 0.
     ///
     /// # Errors
-    /// [`Error::BufferSize`] when `densities` is shorter than the grid needs, and options for another grid.
+    /// [`Error::BufferSize`](crate::Error::BufferSize) when `densities` is shorter than the grid needs, and options for
+    /// another grid.
     pub fn fill_f32(
         &self,
         grid: &Grid,
@@ -444,7 +445,8 @@ impl Shadow {
     /// counts pixels, 4 bytes each; pixels outside of the shadow, hidden ones and the rest of the buffer stay as they are.
     ///
     /// # Errors
-    /// [`Error::BufferSize`] when `pixels` is shorter than the grid needs, and options for another grid.
+    /// [`Error::BufferSize`](crate::Error::BufferSize) when `pixels` is shorter than the grid needs, and options for another
+    /// grid.
     pub fn blend_rgba8(
         &self,
         grid: &Grid,
