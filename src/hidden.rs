@@ -111,6 +111,7 @@ impl Hidden {
     }
 
     /// What is hidden of a window of the grid whose first pixel is at column and row `first`.
+    #[cfg(feature = "rayon")]
     pub(crate) fn window(&self, window: &Grid, first: [u32; 2]) -> Self {
         let mut hidden = Self::new(window);
         let [left, top] = first;

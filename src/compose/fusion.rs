@@ -19,7 +19,7 @@ use self::member::Member;
 use self::pixel::{Pixel, bit};
 use super::caster::{AnyShadow, Cast};
 use crate::apart::overlapping;
-use crate::density::{Each, PixelOptions, Sink};
+use crate::density::{PixelOptions, Sink};
 use crate::grid::Grid;
 use crate::scratch::Scratch;
 
@@ -91,44 +91,31 @@ impl Fusion {
         scratch: &mut Scratch,
         sink: &mut dyn Sink,
     ) {
-        let scale = grid.pixels_per_unit();
-        let Some([columns, rows]) = seen_pixels(group, grid) else {
-            return;
-        };
+        let [columns, rows] = shared_pixels(group, grid);
         let width = columns.len();
         self.pixels.clear();
         self.pixels.resize(width * rows.len(), Pixel::default());
-        let first = [columns.start, rows.start];
-        let window = grid.window(first, [columns.end, rows.end]);
-        let hidden = options.hidden.map(|hidden| hidden.window(&window, first));
-        let options = PixelOptions {
-            hidden: hidden.as_ref(),
-            ..*options
-        };
         for (index, cast) in group.iter().enumerate() {
-            let bit = bit(index);
-            let mut pass = Each {
+            let mut pass = Pass {
+                cast,
+                bit: bit(index),
+                columns: columns.clone(),
+                rows: rows.clone(),
                 pixels: &mut self.pixels,
-                stride: width,
-                put: |pixel: &mut Pixel, density: f32| pixel.add(density, cast, bit),
+                row: &mut self.row,
+                sink,
             };
-            cast.shadow.draw(&window, &options, scratch, &mut pass);
+            cast.shadow.draw(grid, options, scratch, &mut pass);
         }
-        let members = match group {
-            [_] => Vec::new(),
-            several => several
-                .iter()
-                .filter_map(|cast| Member::new(cast, scale))
-                .collect(),
-        };
-        let [shared_columns, shared_rows] = shared_pixels(group, &window);
-        for row in 0..rows.len() {
-            if members.len() > 1 && shared_rows.contains(&row) {
-                let pixels = &mut self.pixels[row * width..][shared_columns.clone()];
-                let start = window.corner() + DVec2::new(shared_columns.start as f64, row as f64);
-                self.meet.mend(&members, start, pixels);
-            }
-            let pixels = &self.pixels[row * width..][..width];
+        if self.pixels.is_empty() {
+            return;
+        }
+        let scale = grid.pixels_per_unit();
+        let members = group.iter().filter_map(|cast| Member::new(cast, scale));
+        let members: Vec<Member> = members.collect();
+        for (y, pixels) in rows.zip(self.pixels.chunks_exact_mut(width)) {
+            let start = grid.corner() + DVec2::new(f64::from(columns.start), f64::from(y));
+            self.meet.mend(&members, start, pixels);
             self.row.clear();
             self.row.extend(pixels.iter().map(|pixel| pixel.held));
             let is_held = |held: &f32| *held != 0.0;
@@ -138,33 +125,90 @@ impl Fusion {
             ) else {
                 continue;
             };
-            let on_grid = columns.start + first as u32..columns.start + last as u32 + 1;
-            sink.values(rows.start + row as u32, on_grid, &self.row[first..=last]);
+            let held = columns.start + first as u32..columns.start + last as u32 + 1;
+            sink.values(y, held, &self.row[first..=last]);
         }
     }
 }
 
-/// The columns and rows of the grid that any of the casts may reach.
-fn seen_pixels(group: &[&Cast], grid: &Grid) -> Option<[Range<u32>; 2]> {
-    let scale = grid.pixels_per_unit();
-    let boxes = group.iter().filter_map(|cast| cast.shadow.reach(scale));
-    let (min, max) = boxes.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
-    let seen = [0, 1].map(|axis| {
-        let end = f64::from([grid.width(), grid.height()][axis]);
-        let on_grid = |v: f64| (v - grid.corner()[axis]).clamp(0.0, end) as u32;
-        on_grid(min[axis].floor())..on_grid(max[axis].ceil() + 1.0)
-    });
-    (!seen.iter().any(Range::is_empty)).then_some(seen)
+/// One cast on its way to the pixels: those that others may reach too are kept until all are known, all others are told
+/// at once.
+struct Pass<'a> {
+    cast: &'a Cast,
+    bit: u16,
+    /// The shared pixels.
+    columns: Range<u32>,
+    rows: Range<u32>,
+    pixels: &'a mut [Pixel],
+    row: &'a mut Vec<f32>,
+    sink: &'a mut dyn Sink,
 }
 
-/// The columns and rows of the window that two of the casts may reach.
-fn shared_pixels(group: &[&Cast], window: &Grid) -> [Range<usize>; 2] {
-    let scale = window.pixels_per_unit();
+impl Pass<'_> {
+    /// The parts of a row's columns left of the shared pixels, among them and right of them.
+    fn parts(&self, y: u32, columns: &Range<u32>) -> [Range<u32>; 3] {
+        if !self.rows.contains(&y) {
+            return [columns.clone(), 0..0, 0..0];
+        }
+        let [start, end] =
+            [self.columns.start, self.columns.end].map(|end| end.clamp(columns.start, columns.end));
+        [columns.start..start, start..end, end..columns.end]
+    }
+
+    fn shared(&mut self, y: u32, columns: &Range<u32>) -> &mut [Pixel] {
+        let start = (y - self.rows.start) as usize * self.columns.len();
+        let [from, to] = [columns.start, columns.end].map(|x| (x - self.columns.start) as usize);
+        &mut self.pixels[start + from..start + to]
+    }
+}
+
+impl Sink for Pass<'_> {
+    fn constant(&mut self, y: u32, columns: Range<u32>, density: f32) {
+        let [left, shared, right] = self.parts(y, &columns);
+        let (cast, bit) = (self.cast, self.bit);
+        if !shared.is_empty() {
+            for pixel in self.shared(y, &shared) {
+                pixel.add(density, cast, bit);
+            }
+        }
+        let held = pixel::alone(density, cast);
+        for part in [left, right] {
+            if !part.is_empty() && held != 0.0 {
+                self.sink.constant(y, part, held);
+            }
+        }
+    }
+
+    fn values(&mut self, y: u32, columns: Range<u32>, densities: &[f32]) {
+        let [left, shared, right] = self.parts(y, &columns);
+        let (cast, bit) = (self.cast, self.bit);
+        let of = |part: &Range<u32>| {
+            &densities[(part.start - columns.start) as usize..(part.end - columns.start) as usize]
+        };
+        if !shared.is_empty() {
+            for (pixel, &density) in self.shared(y, &shared).iter_mut().zip(of(&shared)) {
+                pixel.add(density, cast, bit);
+            }
+        }
+        for part in [left, right] {
+            if !part.is_empty() {
+                self.row.clear();
+                let held = of(&part).iter().map(|&density| pixel::alone(density, cast));
+                self.row.extend(held);
+                self.sink.values(y, part, self.row);
+            }
+        }
+    }
+}
+
+/// The columns and rows of the grid that two of the casts may reach.
+fn shared_pixels(group: &[&Cast], grid: &Grid) -> [Range<u32>; 2] {
+    let scale = grid.pixels_per_unit();
     let boxes: Vec<(DVec2, DVec2)> = group
         .iter()
         .filter_map(|cast| cast.shadow.reach(scale))
         .collect();
-    [0, 1].map(|axis| {
+    let shared = [0, 1].map(|axis| {
         // Beyond the second lowest beginning and the second highest end there is one at most.
         let mut starts: Vec<f64> = boxes.iter().map(|(min, _)| min[axis]).collect();
         let mut ends: Vec<f64> = boxes.iter().map(|(_, max)| max[axis]).collect();
@@ -173,8 +217,12 @@ fn shared_pixels(group: &[&Cast], window: &Grid) -> [Range<usize>; 2] {
         let (Some(start), Some(end)) = (starts.get(1), ends.get(1)) else {
             return 0..0;
         };
-        let count = f64::from([window.width(), window.height()][axis]);
-        let on_window = |v: f64| (v - window.corner()[axis]).clamp(0.0, count) as usize;
-        on_window(start.floor())..on_window(end.ceil() + 1.0)
-    })
+        let count = f64::from([grid.width(), grid.height()][axis]);
+        let on_grid = |v: f64| (v - grid.corner()[axis]).clamp(0.0, count) as u32;
+        on_grid(start.floor())..on_grid(end.ceil() + 1.0)
+    });
+    if shared.iter().any(Range::is_empty) {
+        return [0..0, 0..0];
+    }
+    shared
 }

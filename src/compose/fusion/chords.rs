@@ -54,6 +54,11 @@ impl Occluder {
         }
     }
 
+    /// A whole pixel of its own, from the scene's origin.
+    pub(super) fn origin(&self) -> DVec2 {
+        self.loops.first().map_or(DVec2::ZERO, |first| first.base)
+    }
+
     /// Puts the lines that discs about points at height `y` may meet into `out`, in pixels from the scene's origin.
     pub(super) fn lines_near(&self, y: f64, out: &mut Vec<[DVec2; 2]>) {
         for of_loop in &self.loops {
@@ -179,7 +184,7 @@ struct Node {
 /// The spans that a caster hides of all chords.
 #[derive(Debug, Default)]
 struct Spans {
-    /// Where they begin and end, in pixels from the first point, from left to right, one chord after the other.
+    /// Where they begin and end, in pixels from the origin, from left to right, one chord after the other.
     crossings: Vec<f64>,
     /// Where each chord's crossings begin, and where the last one's end.
     starts: Vec<usize>,
@@ -188,7 +193,7 @@ struct Spans {
 }
 
 impl Chords {
-    /// The chords of a row of points, the first of which each caster sees at a place of its own.
+    /// The chords of a row of points; each caster sees the row's origin at a place of its own.
     pub(super) fn place<'a>(
         &mut self,
         casters: impl ExactSizeIterator<Item = (&'a Occluder, DVec2)> + Clone,
@@ -208,11 +213,12 @@ impl Chords {
                     continue;
                 }
                 let meets = |edge: &&[DVec2; 2]| edge[0].y <= high && edge[1].y >= low;
+                let mut crossed = [0; 2];
                 for edge in of_loop.edges.iter().filter(meets) {
-                    let [first, end] = edge.map(|point| {
-                        let height = (point.y - at.y) / caster.radius;
-                        self.nodes.partition_point(|node| node.height < height)
-                    });
+                    for (node, point) in crossed.iter_mut().zip(edge) {
+                        *node = first_from(&self.nodes, (point.y - at.y) / caster.radius, *node);
+                    }
+                    let [first, end] = crossed;
                     if first < end {
                         self.near.push((at, *edge, first..end));
                         for count in &mut hidden.starts[first..end] {
@@ -239,7 +245,11 @@ impl Chords {
                 }
             }
             for chord in hidden.starts.windows(2) {
-                hidden.crossings[chord[0]..chord[1]].sort_unstable_by(f64::total_cmp);
+                match &mut hidden.crossings[chord[0]..chord[1]] {
+                    [] | [_] => {}
+                    [a, b] => (*a, *b) = (a.min(*b), a.max(*b)),
+                    more => more.sort_unstable_by(f64::total_cmp),
+                }
             }
         }
     }
@@ -285,7 +295,7 @@ impl Chords {
         }
     }
 
-    /// The density of one caster at the points that are whole pixels and `offset` behind the first.
+    /// The density of one caster at the points that are whole pixels and `offset` behind the origin.
     pub(super) fn density(&self, level: Level, caster: usize, offset: f64, out: &mut [f32; BLOCK]) {
         dispatch!(level, simd => simd.vectorize(#[inline(always)] || self.add_density(caster, offset, out)));
     }
@@ -367,6 +377,17 @@ impl Chords {
             sum += node.weight * (node.half - done) * held(&self.inside);
         }
         sum
+    }
+}
+
+/// The first node that is not above a height; most often the one that is guessed.
+fn first_from(nodes: &[Node], height: f64, guessed: usize) -> usize {
+    let is_above = |node: usize| nodes.get(node).is_some_and(|node| node.height < height);
+    let is_right = !is_above(guessed) && (guessed == 0 || is_above(guessed - 1));
+    if is_right {
+        guessed
+    } else {
+        nodes.partition_point(|node| node.height < height)
     }
 }
 

@@ -48,6 +48,8 @@ pub(super) struct Meet {
     /// What both of two casters hide, as far as it was asked for.
     shared: Vec<([usize; 2], [f32; BLOCK])>,
     hidden: Vec<f32>,
+    /// Whose chords are known, and at what y.
+    placed: Option<([u16; 2], f64)>,
 }
 
 impl Default for Meet {
@@ -59,6 +61,7 @@ impl Default for Meet {
             densities: Vec::new(),
             shared: Vec::new(),
             hidden: Vec::new(),
+            placed: None,
         }
     }
 }
@@ -68,6 +71,8 @@ struct Company<'a> {
     members: Vec<&'a Member>,
     /// Which of them hide a part of the disc, as far as is known; all others hide all of it.
     partial: Vec<usize>,
+    /// The bits of the pixels that see this company.
+    bits: [u16; 2],
 }
 
 impl<'a> Company<'a> {
@@ -75,6 +80,7 @@ impl<'a> Company<'a> {
         let mut company = Self {
             members: Vec::new(),
             partial: Vec::new(),
+            bits: [pixel.partial, pixel.full],
         };
         let has = |bits: u16, index: usize| bits & bit(index) != 0;
         for (index, member) in members.iter().enumerate() {
@@ -101,12 +107,23 @@ impl<'a> Company<'a> {
     fn partial(&self) -> impl ExactSizeIterator<Item = &'a Member> + Clone {
         self.partial.iter().map(|&index| self.members[index])
     }
+
+    /// A whole pixel that does not depend on what of them is seen, if all that hide a part of the disc are of one radius each.
+    fn origin(&self) -> Option<DVec2> {
+        let mut origins = self.partial().map(|member| match &member.kind {
+            Kind::Level(occluder) => Some(occluder.origin()),
+            Kind::Tilted(_) => None,
+        });
+        let first = origins.next().flatten();
+        first.filter(|_| origins.all(|origin| origin.is_some()))
+    }
 }
 
 impl Meet {
     /// Mends the pixels of a row, the first of which begins at `start`, from which several members hide a part of the disc.
     pub(super) fn mend(&mut self, members: &[Member], start: DVec2, pixels: &mut [Pixel]) {
         let mut index = 0;
+        self.placed = None;
         self.lines.iter_mut().for_each(Vec::clear);
         self.lines.resize_with(members.len(), Vec::new);
         let mut is_row_known = false;
@@ -171,8 +188,8 @@ impl Meet {
                 None => {
                     let shared = shared.get_or_insert_with(|| {
                         let mut shared = [0.0; BLOCK];
-                        place(&mut self.chords, company, corner + 0.5);
-                        self.chords.shared(self.level, [0, 1], 0.0, &mut shared);
+                        let offset = self.place(company, corner + 0.5);
+                        self.chords.shared(self.level, [0, 1], offset, &mut shared);
                         shared
                     });
                     shared[lane]
@@ -204,12 +221,7 @@ impl Meet {
 
     fn mend_all(&mut self, company: &Company<'_>, corner: DVec2, run: &mut [Pixel]) {
         // Of many radii each point sees a polygon of its own.
-        let is_tilted = |member: &Member| matches!(member.kind, Kind::Tilted(_));
-        let most = if company.partial().any(is_tilted) {
-            1
-        } else {
-            BLOCK
-        };
+        let most = if company.origin().is_some() { BLOCK } else { 1 };
         for (chunk, pixels) in run.chunks_mut(most).enumerate() {
             let corner = corner + DVec2::new((chunk * most) as f64, 0.0);
             let mends = self.mends(company, corner, pixels.len());
@@ -229,28 +241,20 @@ impl Meet {
         let mut mends = [0.0; BLOCK];
         let middle = corner + 0.5;
         if side == 0.0 {
-            place(&mut self.chords, company, middle);
-            self.add(company, 0.0, 1.0, &mut mends[..count]);
+            let offset = self.place(company, middle);
+            self.add(company, offset, 1.0, &mut mends[..count]);
             return mends;
         }
         // Next to what each hides what both do is a small thing: few points tell it.
         let radius = if side < 1.0 { 2.0 } else { 1.0 };
-        let mut placed = f64::NAN;
         for (point, weight) in quadrature::square(radius) {
-            if point.y != placed {
-                placed = point.y;
-                place(
-                    &mut self.chords,
-                    company,
-                    middle + DVec2::new(0.0, point.y * side),
-                );
-            }
-            self.add(company, point.x * side, weight as f32, &mut mends[..count]);
+            let offset = self.place(company, middle + point * side);
+            self.add(company, offset, weight as f32, &mut mends[..count]);
         }
         mends
     }
 
-    /// Adds what is to be mended at the points that are whole pixels and `offset` behind the first.
+    /// Adds what is to be mended at the points that are whole pixels and `offset` behind the chords' origin.
     fn add(&mut self, company: &Company<'_>, offset: f64, weight: f32, mends: &mut [f32]) {
         let members = &company.members;
         self.densities.resize(company.partial.len(), [0.0; BLOCK]);
@@ -305,16 +309,36 @@ impl Meet {
         });
         &self.shared[index].1
     }
-}
 
-/// Finds the chords of the points from `at` on for the members that hide a part of the disc.
-fn place(chords: &mut Chords, company: &Company<'_>, at: DVec2) {
-    let seen: Vec<(Cow<'_, Occluder>, DVec2)> = company
-        .partial()
-        .map(|member| match &member.kind {
-            Kind::Level(occluder) => (Cow::Borrowed(occluder), at),
-            Kind::Tilted(loops) => (Cow::Owned(Occluder::seen_from(at, loops)), DVec2::ZERO),
-        })
-        .collect();
-    chords.place(seen.iter().map(|(occluder, at)| (occluder.as_ref(), *at)));
+    /// Finds the chords at the height of a point for the members that hide a part of the disc; how far behind the chords' origin
+    /// the point is.
+    fn place(&mut self, company: &Company<'_>, at: DVec2) -> f64 {
+        let Some(origin) = company.origin() else {
+            self.placed = None;
+            let seen: Vec<(Cow<'_, Occluder>, DVec2)> = company
+                .partial()
+                .map(|member| match &member.kind {
+                    Kind::Level(occluder) => (Cow::Borrowed(occluder), at),
+                    Kind::Tilted(loops) => {
+                        (Cow::Owned(Occluder::seen_from(at, loops)), DVec2::ZERO)
+                    }
+                })
+                .collect();
+            let seen = seen.iter().map(|(occluder, at)| (occluder.as_ref(), *at));
+            self.chords.place(seen);
+            return 0.0;
+        };
+        if self.placed != Some((company.bits, at.y)) {
+            self.placed = Some((company.bits, at.y));
+            let seen: Vec<(&Occluder, DVec2)> = company
+                .partial()
+                .filter_map(|member| match &member.kind {
+                    Kind::Level(occluder) => Some((occluder, DVec2::new(origin.x, at.y))),
+                    Kind::Tilted(_) => None,
+                })
+                .collect();
+            self.chords.place(seen.iter().copied());
+        }
+        at.x - origin.x
+    }
 }

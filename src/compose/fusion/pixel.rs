@@ -26,14 +26,26 @@ pub(super) fn bit(index: usize) -> u16 {
     1 << index.min(REST)
 }
 
+/// What rounding leaves beyond a shadow's ends would make a partial cast of none.
+fn rounded(density: f32) -> f32 {
+    match density {
+        ..ROUNDING => 0.0,
+        density if density > 1.0 - ROUNDING => 1.0,
+        density => density,
+    }
+}
+
+/// What a cast holds back by itself.
+pub(super) fn alone(density: f32, cast: &Cast) -> f32 {
+    cast.strength as f32 * (cast.opacity as f32 * rounded(density))
+}
+
 impl Pixel {
     pub(super) fn add(&mut self, density: f32, cast: &Cast, bit: u16) {
-        // What rounding leaves beyond a shadow's ends would make a partial cast of none.
-        let density = match density {
-            ..ROUNDING => return,
-            density if density > 1.0 - ROUNDING => 1.0,
-            density => density,
-        };
+        let density = rounded(density);
+        if density == 0.0 {
+            return;
+        }
         let hides = cast.opacity as f32 * density * (1.0 - self.met);
         self.held += cast.strength as f32 * hides;
         self.met += hides;
