@@ -12,11 +12,12 @@ mod pixel;
 
 use core::ops::Range;
 
+use fearless_simd::Level;
 use glam::DVec2;
 
 use self::meet::Meet;
 use self::member::Member;
-use self::pixel::{Pixel, bit};
+use self::pixel::{By, Pixels};
 use super::caster::{AnyShadow, Cast};
 use crate::apart::overlapping;
 use crate::density::{PixelOptions, Sink};
@@ -64,7 +65,7 @@ pub(super) fn groups(casts: &[Cast], overlap: Overlap) -> Vec<Vec<&Cast>> {
 /// Memory to draw casts together with. It holds no results.
 #[derive(Debug, Default)]
 pub(crate) struct Fusion {
-    pixels: Vec<Pixel>,
+    pixels: Pixels,
     row: Vec<f32>,
     meet: Meet,
 }
@@ -93,14 +94,13 @@ impl Fusion {
     ) {
         let [columns, rows] = shared_pixels(group, grid);
         let width = columns.len();
-        self.pixels.clear();
-        self.pixels.resize(width * rows.len(), Pixel::default());
+        self.pixels.reset(width * rows.len());
         for (index, cast) in group.iter().enumerate() {
             let mut pass = Pass {
-                cast,
-                bit: bit(index),
+                by: By::new(cast, index),
                 columns: columns.clone(),
                 rows: rows.clone(),
+                level: scratch.level(),
                 pixels: &mut self.pixels,
                 row: &mut self.row,
                 sink,
@@ -113,20 +113,21 @@ impl Fusion {
         let scale = grid.pixels_per_unit();
         let members = group.iter().filter_map(|cast| Member::new(cast, scale));
         let members: Vec<Member> = members.collect();
-        for (y, pixels) in rows.zip(self.pixels.chunks_exact_mut(width)) {
+        for (row, y) in rows.enumerate() {
             let start = grid.corner() + DVec2::new(f64::from(columns.start), f64::from(y));
-            self.meet.mend(&members, start, pixels);
-            self.row.clear();
-            self.row.extend(pixels.iter().map(|pixel| pixel.held));
+            let at = row * width..(row + 1) * width;
+            self.meet
+                .mend(&members, start, &mut self.pixels, at.clone());
+            let held = self.pixels.held(at);
             let is_held = |held: &f32| *held != 0.0;
-            let (Some(first), Some(last)) = (
-                self.row.iter().position(is_held),
-                self.row.iter().rposition(is_held),
-            ) else {
-                continue;
-            };
-            let held = columns.start + first as u32..columns.start + last as u32 + 1;
-            sink.values(y, held, &self.row[first..=last]);
+            let ends = (
+                held.iter().position(is_held),
+                held.iter().rposition(is_held),
+            );
+            if let (Some(first), Some(last)) = ends {
+                let held_back = columns.start + first as u32..columns.start + last as u32 + 1;
+                sink.values(y, held_back, &held[first..]);
+            }
         }
     }
 }
@@ -134,12 +135,12 @@ impl Fusion {
 /// One cast on its way to the pixels: those that others may reach too are kept until all are known, all others are told
 /// at once.
 struct Pass<'a> {
-    cast: &'a Cast,
-    bit: u16,
+    by: By,
+    level: Level,
     /// The shared pixels.
     columns: Range<u32>,
     rows: Range<u32>,
-    pixels: &'a mut [Pixel],
+    pixels: &'a mut Pixels,
     row: &'a mut Vec<f32>,
     sink: &'a mut dyn Sink,
 }
@@ -155,23 +156,22 @@ impl Pass<'_> {
         [columns.start..start, start..end, end..columns.end]
     }
 
-    fn shared(&mut self, y: u32, columns: &Range<u32>) -> &mut [Pixel] {
+    /// Where among the shared pixels some columns are.
+    fn shared(&self, y: u32, columns: &Range<u32>) -> Range<usize> {
         let start = (y - self.rows.start) as usize * self.columns.len();
         let [from, to] = [columns.start, columns.end].map(|x| (x - self.columns.start) as usize);
-        &mut self.pixels[start + from..start + to]
+        start + from..start + to
     }
 }
 
 impl Sink for Pass<'_> {
     fn constant(&mut self, y: u32, columns: Range<u32>, density: f32) {
         let [left, shared, right] = self.parts(y, &columns);
-        let (cast, bit) = (self.cast, self.bit);
         if !shared.is_empty() {
-            for pixel in self.shared(y, &shared) {
-                pixel.add(density, cast, bit);
-            }
+            let at = self.shared(y, &shared);
+            self.pixels.add_constant(self.level, at, density, self.by);
         }
-        let held = pixel::alone(density, cast);
+        let held = self.by.alone(density);
         for part in [left, right] {
             if !part.is_empty() && held != 0.0 {
                 self.sink.constant(y, part, held);
@@ -181,19 +181,17 @@ impl Sink for Pass<'_> {
 
     fn values(&mut self, y: u32, columns: Range<u32>, densities: &[f32]) {
         let [left, shared, right] = self.parts(y, &columns);
-        let (cast, bit) = (self.cast, self.bit);
         let of = |part: &Range<u32>| {
             &densities[(part.start - columns.start) as usize..(part.end - columns.start) as usize]
         };
         if !shared.is_empty() {
-            for (pixel, &density) in self.shared(y, &shared).iter_mut().zip(of(&shared)) {
-                pixel.add(density, cast, bit);
-            }
+            let at = self.shared(y, &shared);
+            self.pixels.add_values(self.level, at, of(&shared), self.by);
         }
         for part in [left, right] {
             if !part.is_empty() {
+                let held = of(&part).iter().map(|&density| self.by.alone(density));
                 self.row.clear();
-                let held = of(&part).iter().map(|&density| pixel::alone(density, cast));
                 self.row.extend(held);
                 self.sink.values(y, part, self.row);
             }

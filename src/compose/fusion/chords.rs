@@ -6,15 +6,22 @@
 
 use core::ops::Range;
 
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::{Level, Simd, SimdBase, dispatch, f32x16};
 use glam::DVec2;
-use libm::asin;
+use libm::{asin, floor};
 
 use crate::density::quadrature;
 use crate::tilted::Circle;
 
-/// At most so many pixels of a row are worked on together.
-pub(super) const BLOCK: usize = 32;
+/// So many pixels of a row are worked on together.
+pub(super) const BLOCK: usize = 16;
+
+/// Where the block of a point begins that is so far behind the origin, and the point's number in it. Blocks do not depend on
+/// what is asked for: nor do the bits of what is found.
+pub(super) fn block_of(offset: f64) -> (f64, usize) {
+    let lane = (floor(offset) as i64).rem_euclid(BLOCK as i64);
+    (offset - lane as f64, lane as usize)
+}
 
 /// Into so many equal angles the disc's height is cut, and again wherever an outline has a top, a bottom or a level edge.
 const PIECES: u32 = 12;
@@ -295,26 +302,26 @@ impl Chords {
         }
     }
 
-    /// The density of one caster at the points that are whole pixels and `offset` behind the origin.
-    pub(super) fn density(&self, level: Level, caster: usize, offset: f64, out: &mut [f32; BLOCK]) {
-        dispatch!(level, simd => simd.vectorize(#[inline(always)] || self.add_density(caster, offset, out)));
+    /// The density of one caster at the points of a block that begins so far behind the origin.
+    pub(super) fn density(&self, level: Level, caster: usize, block: f64, out: &mut [f32; BLOCK]) {
+        dispatch!(level, simd => self.add_density(simd, caster, block, out));
     }
 
     #[inline(always)]
-    fn add_density(&self, caster: usize, offset: f64, out: &mut [f32; BLOCK]) {
+    fn add_density<S: Simd>(&self, simd: S, caster: usize, block: f64, out: &mut [f32; BLOCK]) {
+        let splat = |v: f32| f32x16::splat(simd, v);
         let hidden = &self.hidden[caster];
-        let mut sums = [0.0; BLOCK];
+        let x = hidden.lanes(simd);
+        let (zero, mut sum) = (splat(0.0), splat(0.0));
         for (index, node) in self.nodes.iter().enumerate() {
+            let half = splat(node.half);
             for &[from, to] in hidden.of(index) {
-                for (lane, sum) in sums.iter_mut().enumerate() {
-                    let x = lane as f64 + offset;
-                    let from = hidden.unit(from - x).max(-node.half);
-                    let to = hidden.unit(to - x).min(node.half);
-                    *sum += node.weight * (to - from).max(0.0);
-                }
+                let from = (splat(hidden.unit(from - block)) - x).max(-half);
+                let to = (splat(hidden.unit(to - block)) - x).min(half);
+                sum += (to - from).max(zero) * node.weight;
             }
         }
-        *out = sums.map(|sum| sum.min(1.0));
+        sum.min(splat(1.0)).store_slice(out);
     }
 
     /// The part of the disc that both of two casters hide from such points.
@@ -322,29 +329,31 @@ impl Chords {
         &self,
         level: Level,
         pair: [usize; 2],
-        offset: f64,
+        block: f64,
         out: &mut [f32; BLOCK],
     ) {
-        dispatch!(level, simd => simd.vectorize(#[inline(always)] || self.add_shared(pair, offset, out)));
+        dispatch!(level, simd => self.add_shared(simd, pair, block, out));
     }
 
     #[inline(always)]
-    fn add_shared(&self, pair: [usize; 2], offset: f64, out: &mut [f32; BLOCK]) {
+    fn add_shared<S: Simd>(&self, simd: S, pair: [usize; 2], block: f64, out: &mut [f32; BLOCK]) {
+        let splat = |v: f32| f32x16::splat(simd, v);
         let [a, b] = pair.map(|caster| &self.hidden[caster]);
-        let mut sums = [0.0; BLOCK];
+        let (x_a, x_b) = (a.lanes(simd), b.lanes(simd));
+        let (zero, mut sum) = (splat(0.0), splat(0.0));
         for (index, node) in self.nodes.iter().enumerate() {
-            for &[from_a, to_a] in a.of(index) {
-                for &[from_b, to_b] in b.of(index) {
-                    for (lane, sum) in sums.iter_mut().enumerate() {
-                        let x = lane as f64 + offset;
-                        let from = a.unit(from_a - x).max(b.unit(from_b - x)).max(-node.half);
-                        let to = a.unit(to_a - x).min(b.unit(to_b - x)).min(node.half);
-                        *sum += node.weight * (to - from).max(0.0);
-                    }
+            let half = splat(node.half);
+            for &[from, to] in a.of(index) {
+                let from_a = (splat(a.unit(from - block)) - x_a).max(-half);
+                let to_a = (splat(a.unit(to - block)) - x_a).min(half);
+                for &[from, to] in b.of(index) {
+                    let from = (splat(b.unit(from - block)) - x_b).max(from_a);
+                    let to = (splat(b.unit(to - block)) - x_b).min(to_a);
+                    sum += (to - from).max(zero) * node.weight;
                 }
             }
         }
-        *out = sums.map(|sum| sum.min(1.0));
+        sum.min(splat(1.0)).store_slice(out);
     }
 
     /// What all casters hold back of the light at one of the points, where `held` says what they do together of a ray that
@@ -405,6 +414,17 @@ impl Spans {
         self.crossings[self.starts[chord]..self.starts[chord + 1]]
             .as_chunks()
             .0
+    }
+
+    /// How far behind its block's first one each point is, in the unit of the disc.
+    #[inline(always)]
+    fn lanes<S: Simd>(&self, simd: S) -> f32x16<S> {
+        let lanes = f32x16::from_fn(
+            simd,
+            #[inline(always)]
+            |lane| lane as f32,
+        );
+        lanes * self.factor
     }
 
     /// A distance in pixels in the unit of the disc.

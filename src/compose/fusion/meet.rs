@@ -1,13 +1,14 @@
 //! Where casters meet: by how much more they hold back together than their densities tell one by one.
 
+use core::ops::Range;
 use std::borrow::Cow;
 
 use fearless_simd::Level;
 use glam::DVec2;
 
-use super::chords::{BLOCK, Chords, Occluder};
+use super::chords::{BLOCK, Chords, Occluder, block_of};
 use super::member::{Kind, Member};
-use super::pixel::{Pixel, REST, bit};
+use super::pixel::{self, Pixels, REST, bit};
 use crate::density::quadrature;
 
 /// What members hold back together where they hide these parts of the light one by one, and these are independent.
@@ -49,7 +50,7 @@ pub(super) struct Meet {
     shared: Vec<([usize; 2], [f32; BLOCK])>,
     hidden: Vec<f32>,
     /// Whose chords are known, and at what y.
-    placed: Option<([u16; 2], f64)>,
+    placed: Option<(pixel::Company, f64)>,
 }
 
 impl Default for Meet {
@@ -71,24 +72,24 @@ struct Company<'a> {
     members: Vec<&'a Member>,
     /// Which of them hide a part of the disc, as far as is known; all others hide all of it.
     partial: Vec<usize>,
-    /// The bits of the pixels that see this company.
-    bits: [u16; 2],
+    /// As the pixels know them.
+    seen: pixel::Company,
 }
 
 impl<'a> Company<'a> {
-    fn of(pixel: &Pixel, members: &'a [Member]) -> Self {
+    fn of(seen: pixel::Company, members: &'a [Member]) -> Self {
         let mut company = Self {
             members: Vec::new(),
             partial: Vec::new(),
-            bits: [pixel.partial, pixel.full],
+            seen,
         };
-        let has = |bits: u16, index: usize| bits & bit(index) != 0;
+        let has = |bits: u32, index: usize| bits & bit(index) != 0;
         for (index, member) in members.iter().enumerate() {
-            let is_partial = has(pixel.partial, index) || index >= REST && has(pixel.full, index);
+            let is_partial = has(seen.partial(), index) || index >= REST && has(seen.full(), index);
             if is_partial {
                 company.partial.push(company.members.len());
             }
-            if is_partial || has(pixel.full, index) {
+            if is_partial || has(seen.full(), index) {
                 company.members.push(member);
             }
         }
@@ -121,13 +122,19 @@ impl<'a> Company<'a> {
 
 impl Meet {
     /// Mends the pixels of a row, the first of which begins at `start`, from which several members hide a part of the disc.
-    pub(super) fn mend(&mut self, members: &[Member], start: DVec2, pixels: &mut [Pixel]) {
-        let mut index = 0;
+    pub(super) fn mend(
+        &mut self,
+        members: &[Member],
+        start: DVec2,
+        pixels: &mut Pixels,
+        row: Range<usize>,
+    ) {
         self.placed = None;
         self.lines.iter_mut().for_each(Vec::clear);
         self.lines.resize_with(members.len(), Vec::new);
         let mut is_row_known = false;
-        while let Some(next) = pixels[index..].iter().position(Pixel::is_shared) {
+        let mut rest = row.clone();
+        while let Some((seen, run)) = pixels.next_shared(rest.clone()) {
             if !is_row_known {
                 is_row_known = true;
                 for (member, lines) in members.iter().zip(&mut self.lines) {
@@ -136,25 +143,19 @@ impl Meet {
                     }
                 }
             }
-            index += next;
-            let first = pixels[index];
-            let count = pixels[index..]
-                .iter()
-                .take(BLOCK)
-                .take_while(|pixel| (pixel.partial, pixel.full) == (first.partial, first.full))
-                .count();
-            let company = Company::of(&first, members);
-            let corner = start + DVec2::new(index as f64, 0.0);
-            let run = &mut pixels[index..index + count];
+            rest.start = run.end;
+            let company = Company::of(seen, members);
+            let corner = start + DVec2::new((run.start - row.start) as f64, 0.0);
             match *company.partial {
-                [a, b] if first.partial >> REST == 0 && company.partial().all(Member::is_plain) => {
-                    let lowest = first.partial.trailing_zeros() as usize;
-                    let highest = REST - first.partial.leading_zeros() as usize;
-                    self.mend_pair(&company, [a, b], [lowest, highest], corner, run);
+                [a, b]
+                    if seen.partial() >> REST == 0 && company.partial().all(Member::is_plain) =>
+                {
+                    let lowest = seen.partial().trailing_zeros() as usize;
+                    let highest = seen.partial().ilog2() as usize;
+                    self.mend_pair(&company, [a, b], [lowest, highest], corner, pixels, run);
                 }
-                _ => self.mend_all(&company, corner, run),
+                _ => self.mend_all(&company, corner, pixels, run),
             }
-            index += count;
         }
     }
 
@@ -166,17 +167,19 @@ impl Meet {
         pair: [usize; 2],
         indices: [usize; 2],
         corner: DVec2,
-        run: &mut [Pixel],
+        pixels: &mut Pixels,
+        run: Range<usize>,
     ) {
         let mut hidden = company.full();
         let cross = cross(&company.members, pair, &mut hidden);
         if cross == 0.0 {
             return;
         }
-        let mut shared = None;
+        let mut shared = (f64::NAN, [0.0; BLOCK]);
+        let mut placed = None;
         let (mut parallel, mut until) = (None, f64::MIN);
-        for lane in 0..run.len() {
-            let [a, b] = run[lane].densities;
+        for (lane, pixel) in run.enumerate() {
+            let [a, b] = pixels.densities(pixel);
             let at = corner + DVec2::new(lane as f64 + 0.5, 0.5);
             if at.x >= until {
                 (parallel, until) = self.parallel(company, pair, indices, at);
@@ -186,16 +189,17 @@ impl Meet {
                 Some(true) => a.min(b),
                 Some(false) => (a + b - 1.0).max(0.0),
                 None => {
-                    let shared = shared.get_or_insert_with(|| {
-                        let mut shared = [0.0; BLOCK];
-                        let offset = self.place(company, corner + 0.5);
-                        self.chords.shared(self.level, [0, 1], offset, &mut shared);
-                        shared
-                    });
-                    shared[lane]
+                    let offset = *placed.get_or_insert_with(|| self.place(company, corner + 0.5));
+                    let (block, lane) = block_of(offset + lane as f64);
+                    if block != shared.0 {
+                        shared.0 = block;
+                        let both = &mut shared.1;
+                        self.chords.shared(self.level, [0, 1], block, both);
+                    }
+                    shared.1[lane]
                 }
             };
-            run[lane].mend(cross * (together - a * b));
+            pixels.mend(pixel, cross * (together - a * b));
         }
     }
 
@@ -219,27 +223,38 @@ impl Meet {
         (parallel, until_a.min(until_b))
     }
 
-    fn mend_all(&mut self, company: &Company<'_>, corner: DVec2, run: &mut [Pixel]) {
-        // Of many radii each point sees a polygon of its own.
-        let most = if company.origin().is_some() { BLOCK } else { 1 };
-        for (chunk, pixels) in run.chunks_mut(most).enumerate() {
-            let corner = corner + DVec2::new((chunk * most) as f64, 0.0);
-            let mends = self.mends(company, corner, pixels.len());
-            for (pixel, mend) in pixels.iter_mut().zip(mends) {
-                pixel.mend(mend);
+    fn mend_all(
+        &mut self,
+        company: &Company<'_>,
+        corner: DVec2,
+        pixels: &mut Pixels,
+        run: Range<usize>,
+    ) {
+        let mut at = run.start;
+        while at < run.end {
+            let middle = corner + DVec2::new((at - run.start) as f64, 0.0) + 0.5;
+            // Of many radii each point sees a polygon of its own.
+            let most = company.origin().map_or(1, |origin| {
+                let (_, lane) = block_of(middle.x - origin.x);
+                BLOCK - lane
+            });
+            let count = most.min(run.end - at);
+            let mends = self.mends(company, middle, count);
+            for (pixel, mend) in (at..at + count).zip(mends) {
+                pixels.mend(pixel, mend);
             }
+            at += count;
         }
     }
 
-    /// By how much members hold back more than their densities alone tell, for a row of `count` pixels whose first one begins at
-    /// `corner`.
-    fn mends(&mut self, company: &Company<'_>, corner: DVec2, count: usize) -> [f32; BLOCK] {
+    /// By how much members hold back more than their densities alone tell, for a row of `count` pixels of one block whose first
+    /// one's middle is given.
+    fn mends(&mut self, company: &Company<'_>, middle: DVec2, count: usize) -> [f32; BLOCK] {
         let side = company
             .partial()
             .map(Member::averaged_side)
             .fold(0.0, f64::max);
         let mut mends = [0.0; BLOCK];
-        let middle = corner + 0.5;
         if side == 0.0 {
             let offset = self.place(company, middle);
             self.add(company, offset, 1.0, &mut mends[..count]);
@@ -257,13 +272,14 @@ impl Meet {
     /// Adds what is to be mended at the points that are whole pixels and `offset` behind the chords' origin.
     fn add(&mut self, company: &Company<'_>, offset: f64, weight: f32, mends: &mut [f32]) {
         let members = &company.members;
+        let (block, first) = block_of(offset);
         self.densities.resize(company.partial.len(), [0.0; BLOCK]);
         for (index, densities) in self.densities.iter_mut().enumerate() {
-            self.chords.density(self.level, index, offset, densities);
+            self.chords.density(self.level, index, block, densities);
         }
         self.shared.clear();
         let full = company.full();
-        for (lane, mend) in mends.iter_mut().enumerate() {
+        for (lane, mend) in (first..).zip(mends) {
             let is_partial = |density: f32| density > NOTHING && density < 1.0 - NOTHING;
             let partial = self
                 .densities
@@ -282,13 +298,13 @@ impl Meet {
             }
             if is_pair {
                 let apart = self.densities[a][lane] * self.densities[b][lane];
-                let together = self.shared([a, b], offset)[lane];
+                let together = self.shared([a, b], block)[lane];
                 let pair = [company.partial[a], company.partial[b]];
                 *mend += weight * (together - apart) * cross(members, pair, &mut self.hidden);
             } else {
                 let apart = held(members, &self.hidden);
                 let hidden = &mut self.hidden;
-                let together = self.chords.held(lane as f64 + offset, |inside| {
+                let together = self.chords.held(lane as f64 + block, |inside| {
                     for (&index, &inside) in company.partial.iter().zip(inside) {
                         hidden[index] = inside;
                     }
@@ -299,11 +315,11 @@ impl Meet {
         }
     }
 
-    fn shared(&mut self, pair: [usize; 2], offset: f64) -> &[f32; BLOCK] {
+    fn shared(&mut self, pair: [usize; 2], block: f64) -> &[f32; BLOCK] {
         let known = self.shared.iter().position(|(of, _)| *of == pair);
         let index = known.unwrap_or_else(|| {
             let mut shared = [0.0; BLOCK];
-            self.chords.shared(self.level, pair, offset, &mut shared);
+            self.chords.shared(self.level, pair, block, &mut shared);
             self.shared.push((pair, shared));
             self.shared.len() - 1
         });
@@ -328,8 +344,8 @@ impl Meet {
             self.chords.place(seen);
             return 0.0;
         };
-        if self.placed != Some((company.bits, at.y)) {
-            self.placed = Some((company.bits, at.y));
+        if self.placed != Some((company.seen, at.y)) {
+            self.placed = Some((company.seen, at.y));
             let seen: Vec<(&Occluder, DVec2)> = company
                 .partial()
                 .filter_map(|member| match &member.kind {
