@@ -133,8 +133,8 @@ const LANES: [f32; PIXELS] = {
     lanes
 };
 
-/// The upper byte of each half of 32 bits.
-const UPPER: u32 = 0xff00_ff00;
+/// The upper byte of 16 bits.
+const UPPER: u16 = 0xff00;
 
 impl Rgba8<'_> {
     /// Blends the paint by 8-bit coverage, from column `first` of row `y` on.
@@ -182,7 +182,7 @@ impl Ink {
         let Color { r, g, b, .. } = paint.color();
         Self {
             red_blue: (u32::from(b) << 24) | (u32::from(r) << 8),
-            green_alpha: UPPER & ((255 << 24) | (u32::from(g) << 8)),
+            green_alpha: (255 << 24) | (u32::from(g) << 8),
             strength: paint.opacity() * 65_535.0,
         }
     }
@@ -272,12 +272,13 @@ impl<S: Simd> Brush<S> {
         (opacity | (opacity << 16)).bitcast()
     }
 
-    /// What the paint adds to both pairs of channels, in 256ths.
+    /// What the paint and rounding add to both pairs of channels, in 256ths.
     #[inline(always)]
     fn paint(&self, opacity: u16x16<S>) -> [u16x16<S>; 2] {
+        // With what is left of a channel these are 255 upper bytes and 1 at most, a threshold is 254 lower ones.
         [
-            high(self.simd, self.red_blue, opacity),
-            high(self.simd, self.green_alpha, opacity),
+            high(self.simd, self.red_blue, opacity) + self.thresholds,
+            high(self.simd, self.green_alpha, opacity) + self.thresholds,
         ]
     }
 
@@ -306,21 +307,18 @@ impl<S: Simd> Brush<S> {
 
     #[inline(always)]
     fn blend(&self, block: &mut [u8; BLOCK], opacity: u16x16<S>, paint: [u16x16<S>; 2]) {
-        let pixels: u32x8<S> = u8x32::simd_from(self.simd, *block).bitcast();
-        let red_blue = self.over((pixels << 8) & UPPER, opacity, paint[0]) >> 8;
-        let green_alpha = self.over(pixels & UPPER, opacity, paint[1]) & UPPER;
-        let mixed: u8x32<S> = ((red_blue & (UPPER >> 8)) | green_alpha).bitcast();
+        let pixels: u16x16<S> = u8x32::simd_from(self.simd, *block).bitcast();
+        let red_blue = over(self.simd, pixels << 8, opacity, paint[0]) >> 8;
+        let green_alpha = over(self.simd, pixels & UPPER, opacity, paint[1]) & UPPER;
+        let mixed: u8x32<S> = (red_blue | green_alpha).bitcast();
         *block = mixed.into();
     }
+}
 
-    /// Two channels under the paint, to be cut off to their upper bytes.
-    #[inline(always)]
-    fn over(&self, channels: u32x8<S>, opacity: u16x16<S>, paint: u16x16<S>) -> u32x8<S> {
-        let below: u16x16<S> = channels.bitcast();
-        let left = below - high(self.simd, below, opacity);
-        // What is left and what is added are 255 upper bytes and 1 at most, a threshold is 254 lower ones.
-        (left + paint + self.thresholds).bitcast()
-    }
+/// Two channels under paint, to be cut off to their upper bytes.
+#[inline(always)]
+fn over<S: Simd>(simd: S, below: u16x16<S>, opacity: u16x16<S>, paint: u16x16<S>) -> u16x16<S> {
+    below - high(simd, below, opacity) + paint
 }
 
 /// The upper half of each product.

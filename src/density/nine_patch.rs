@@ -17,7 +17,7 @@ use self::sides::{Corners, Node, Strips};
 use super::chords::{Chords, GROUP, Height};
 use super::frame::Frame;
 use super::rounded::Rounded;
-use super::rows::half_disc;
+use super::rows::Window;
 use super::{PixelOptions, Sink, cubic, seen_columns};
 use crate::grid::Grid;
 use crate::scratch::Scratch;
@@ -73,9 +73,9 @@ struct Zone {
     met: [bool; 2],
     /// Where the sides are without corners, counted from the first column.
     sides: [f32; 2],
-    /// The last rows that were computed, and which they are.
+    /// The last rows that were computed, and which they are: [`NONE`] of the lattice's at first.
     rows: [Vec<f32>; RING],
-    which: [Option<i64>; RING],
+    which: [i64; RING],
     /// The blocks of them that were computed.
     done: [Vec<bool>; RING],
     /// The pixels' densities where rows are apart.
@@ -84,6 +84,9 @@ struct Zone {
 
 /// Rows that are kept: the four that a pixel is interpolated from.
 const RING: usize = 4;
+
+/// The number of no row.
+const NONE: i64 = i64::MIN;
 
 /// Columns that are taken at once.
 const BLOCK: usize = 16;
@@ -94,11 +97,15 @@ struct Lattice {
     /// The y of row 0, and pixels from one to the next.
     start: f64,
     pitch: f64,
+    /// Whether pixels are interpolated between them: otherwise there is one for each row of pixels.
+    is_apart: bool,
     /// Strips from one to the next.
     strips: i64,
     /// Rows after `straight` up to so many more are like it: they are left out of the strips.
     straight: i64,
     alike: i64,
+    /// The row of which row 0 is the likeness, if the rectangle's lower half is its upper one's.
+    mirror: Option<i64>,
     /// The first strip.
     first: i64,
 }
@@ -106,37 +113,48 @@ struct Lattice {
 impl Lattice {
     /// For a penumbra radius in pixels and a tolerance in levels; `phase` is where in a pixel of the frame a pixel begins.
     fn new(shape: &Rounded, radius: f64, levels: f64, phase: f64) -> Self {
-        let pitch = radius / steps(shape, radius, levels);
-        let mut lattice = if pitch > NEAREST {
-            Self {
-                start: -phase - 0.5,
-                pitch,
-                strips: GROUP,
-                straight: 0,
-                alike: 0,
-                first: 0,
-            }
+        let [tl, tr, br, bl] = shape.radii;
+        let steps = steps(shape, radius, levels);
+        let between = radius / steps;
+        let is_mirrored = tl == bl && tr == br;
+        let is_apart = between
+            > if is_mirrored {
+                NEAREST_MIRRORED
+            } else {
+                NEAREST
+            };
+        let (pitch, strips) = if is_apart {
+            let strips = GROUP as f64 * cubic::steps(levels) / steps;
+            (between, (strips - 0.2).ceil() as i64)
         } else {
             // A row for each row of pixels.
-            Self {
-                start: 0.0,
-                pitch: 1.0,
-                strips: (ALIGNED * cubic::steps(levels) / radius - 0.1)
-                    .ceil()
-                    .max(1.0) as i64,
-                straight: 0,
-                alike: 0,
-                first: 0,
-            }
+            let strips = (ALIGNED * cubic::steps(levels) / radius - 0.1).ceil();
+            (1.0, strips.max(1.0) as i64)
         };
-        let [tl, tr, br, bl] = shape.radii;
+        let middle = shape.min.y.midpoint(shape.max.y);
+        let half = ((middle - shape.min.y + radius) / pitch).ceil() + 1.0;
+        let (start, mirror) = match (is_apart, is_mirrored) {
+            (true, true) => (middle - half * pitch, Some(2 * half as i64)),
+            (true, false) => (-phase - 0.5, None),
+            (false, _) => (0.0, None),
+        };
+        let mut lattice = Self {
+            start,
+            pitch,
+            is_apart,
+            strips,
+            mirror,
+            straight: 0,
+            alike: 0,
+            first: 0,
+        };
         let reach = radius + 2.0 * lattice.height();
         let first = lattice.row_at(shape.min.y + tl.max(tr) + reach).ceil() as i64;
         let last = lattice.row_at(shape.max.y - bl.max(br) - reach).floor() as i64;
         (lattice.straight, lattice.alike) = (first, (last - first).max(0));
         let top = (shape.min.y - lattice.start) / lattice.height();
         // Chords that begin above the rectangle may end within it.
-        lattice.first = top.floor() as i64 - GROUP;
+        lattice.first = ((top / GROUP as f64).floor() as i64 - 1) * GROUP;
         lattice
     }
 
@@ -150,8 +168,23 @@ impl Lattice {
         (y - self.start) / self.pitch
     }
 
+    /// Takes the next row of pixels: those that need the same rows one after another.
+    fn next(&self, lines: &mut Range<i64>) -> Option<i64> {
+        let place = |line: i64| {
+            let place = self.row_at(line as f64);
+            self.mirror
+                .map_or(place, |mirror| place.min(mirror as f64 - place))
+        };
+        if !lines.is_empty() && place(lines.end - 1) < place(lines.start) {
+            lines.next_back()
+        } else {
+            lines.next()
+        }
+    }
+
     /// A row of which another is a copy, or itself, among those left.
     fn folded(&self, row: i64) -> i64 {
+        let row = self.mirror.map_or(row, |mirror| row.min(mirror - row));
         if row <= self.straight {
             row
         } else {
@@ -166,6 +199,9 @@ const ALIGNED: f64 = 2.0;
 
 /// Rows nearer to each other than this, in pixels, are not worth interpolating between.
 const NEAREST: f64 = 1.25;
+
+/// The same where the rows of one half serve both.
+const NEAREST_MIRRORED: f64 = 0.8;
 
 /// The rows a penumbra radius for a tolerance. Two of the penumbra's ends may meet on the middle line; and where a disc
 /// nearly fills its corner's circle, the density has a tip at that circle's centre that cubics between few rows do not
@@ -217,7 +253,7 @@ pub(crate) fn fill<S: Simd>(
         max: frame.place(rounded.max) - frame.phase - 0.5,
         radii: rounded.radii.map(|r| r * frame.scale),
     };
-    let [columns, lines] = frame.pixels();
+    let [columns, mut lines] = frame.pixels();
     if columns.is_empty() {
         return;
     }
@@ -230,11 +266,11 @@ pub(crate) fn fill<S: Simd>(
     } else {
         0..0
     };
-    let origin = frame.first[0];
-    for line in lines {
+    let (origin, per_radius) = (frame.first[0], 1.0 / radius);
+    while let Some(line) = lattice.next(&mut lines) {
         let y = line as f64;
-        let [above, below] = [shape.min.y - y, shape.max.y - y]
-            .map(|end| half_disc((end / radius).clamp(-1.0, 1.0) as f32));
+        let [above, below] =
+            [shape.min.y - y, shape.max.y - y].map(|end| Window::Disc.half(end * per_radius));
         let between = 2.0 * (below - above);
         if between <= 0.0 {
             continue;
@@ -285,11 +321,17 @@ impl NinePatchScratch {
         };
         let end = ((bottom - shape.min.y) / height) as i64;
         let steep = [steep(tl.max(tr)), end - steep(bl.max(br))];
-        let count = end as usize + GROUP as usize + 2;
+        let count = end as usize + 2 * GROUP as usize + 2;
         let [singles, groups @ ..] = &mut self.strips;
         singles.set(simd, count, [0, 1], height as f32, &sides);
         singles.set_steep(steep);
-        for (first, groups) in groups.iter_mut().enumerate() {
+        // Where rows are groups apart, all of their groups begin alike.
+        let starts = if lattice.strips % GROUP == 0 {
+            1
+        } else {
+            GROUP as usize
+        };
+        for (first, groups) in groups.iter_mut().enumerate().take(starts) {
             let count = count / GROUP as usize + 1;
             groups.set(simd, count, [first, GROUP as usize], height as f32, &sides);
             groups.set_steep(steep.map(|strip| strip / GROUP));
@@ -313,7 +355,7 @@ impl NinePatchScratch {
             zone.end = range.1.floor() as i64 + 1;
             zone.met = [!apart || index == 0, !apart || index == 1];
             zone.sides = [shape.min.x, shape.max.x].map(|x| (x - zone.start as f64) as f32);
-            zone.which = [None; RING];
+            zone.which = [NONE; RING];
             let width = ((zone.end - zone.start) as usize).next_multiple_of(BLOCK);
             for (row, done) in zone.rows.iter_mut().zip(&mut zone.done) {
                 row.resize(width, 0.0);
@@ -336,13 +378,19 @@ impl NinePatchScratch {
     ) -> &[f32] {
         let knot = place.floor();
         let blocks = part.start / BLOCK..part.end.div_ceil(BLOCK);
-        if lattice.pitch == 1.0 {
+        if !lattice.is_apart {
             let row = lattice.folded(knot as i64);
             let slot = self.compute(simd, zone, row, lattice, blocks);
             return &self.zones[zone].rows[slot][part.start..];
         }
+        let first = knot as i64 - 1;
+        let row = lattice.folded(first);
+        if row == lattice.folded(first + 3) {
+            let slot = self.compute(simd, zone, row, lattice, blocks);
+            return &self.zones[zone].rows[slot][part.start..];
+        }
         let mut slots = [0; 4];
-        for (slot, row) in slots.iter_mut().zip(knot as i64 - 1..) {
+        for (slot, row) in slots.iter_mut().zip(first..) {
             let row = lattice.folded(row);
             *slot = self.compute(simd, zone, row, lattice, blocks.clone());
         }
@@ -377,9 +425,11 @@ impl NinePatchScratch {
         let zone = &mut self.zones[zone];
         let slot = row.rem_euclid(RING as i64) as usize;
         let done = &mut zone.done[slot];
-        if zone.which[slot] != Some(row) {
-            zone.which[slot] = Some(row);
+        if zone.which[slot] != row {
+            zone.which[slot] = row;
             done.fill(false);
+        } else if done[blocks.clone()].iter().all(|done| *done) {
+            return slot;
         }
         let reach = Reach {
             disc: &self.disc,
@@ -517,7 +567,9 @@ impl Reach<'_> {
         depths: &[f32x16<S>; BLOCKS],
         sums: &mut [f32x16<S>; BLOCKS],
     ) {
-        let zero = f32x16::splat(simd, 0.0);
+        let mut inside = [f32x16::splat(simd, 0.0); BLOCKS];
+        // What all columns have too much, added up in the same order: beyond the side nothing is left, exactly.
+        let mut outside = 0.0;
         for (widths, strips, of) in self.runs() {
             let mut start = of.start.max(0);
             for (end, nodes) in strips.parts() {
@@ -530,17 +582,21 @@ impl Reach<'_> {
                 for node in nodes {
                     let (insets, covers) = strips.of(side, *node, start..end);
                     for ((half_width, inset), cover) in widths.iter().zip(insets).zip(covers) {
-                        let offset = f32x16::splat(simd, half_width - inset);
-                        let width = f32x16::splat(simd, half_width + half_width);
-                        let cover = f32x16::splat(simd, cover * share);
+                        let cover = cover * share;
+                        let (first, last) = (inset - half_width, inset + half_width);
+                        outside += first * cover;
+                        let first = f32x16::splat(simd, first);
+                        let last = f32x16::splat(simd, last);
                         for block in 0..BLOCKS {
-                            let inside = (depths[block] + offset).max(zero).min(width);
-                            sums[block] += inside * cover;
+                            inside[block] += depths[block].max(first).min(last) * cover;
                         }
                     }
                 }
                 start = end;
             }
+        }
+        for block in 0..BLOCKS {
+            sums[block] += inside[block] - outside;
         }
     }
 

@@ -40,7 +40,7 @@ impl Window {
     }
 
     /// What lies right of its centre between y = 0 and `t`.
-    fn half(self, t: f64) -> f32 {
+    pub(crate) fn half(self, t: f64) -> f32 {
         match self {
             Self::Disc if t.abs() >= 1.0 => 0.25_f32.copysign(t as f32),
             Self::Disc => half_disc(t as f32),

@@ -11,7 +11,7 @@ const LANES: usize = 16;
 const NODES: [f32; 2] = [0.211_324_87, 0.788_675_1];
 
 /// A rectangle's corners on one of its sides, all in pixels from the first strip's top.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Corners {
     /// Where the rectangle begins and ends.
     pub(super) top: f32,
@@ -28,6 +28,8 @@ pub(super) struct Strips {
     /// What is between the rectangle's top and bottom, as heights of the lowest strips.
     covers: Vec<f32>,
     steep: [i64; 2],
+    /// Where each side's insets are: where both sides are alike, the first one's serve both.
+    places: [usize; 2],
 }
 
 impl Strips {
@@ -44,7 +46,13 @@ impl Strips {
     ) {
         let count = count.next_multiple_of(LANES);
         let height = pitch * high as f32;
-        let Self { insets, covers, .. } = self;
+        let Self {
+            insets,
+            covers,
+            places,
+            ..
+        } = self;
+        *places = if sides[0] == sides[1] { [0, 0] } else { [0, 1] };
         for list in insets.iter_mut().flatten().chain([&mut *covers]) {
             list.resize(count, 0.0);
         }
@@ -60,7 +68,7 @@ impl Strips {
             let start = (strip * pitch).max(top);
             let covered = ((strip * pitch + height).min(bottom) - start).max(zero);
             (covered * (1.0 / pitch)).store_slice(covers);
-            for (insets, side) in insets.iter_mut().zip(sides) {
+            for (insets, side) in insets.iter_mut().zip(sides).take(1 + places[1]) {
                 let mut sum = zero;
                 let place = block * LANES..(block + 1) * LANES;
                 for node in 0..2 {
@@ -107,7 +115,7 @@ impl Strips {
     #[inline(always)]
     pub(super) fn of(&self, side: usize, node: Node, strips: Range<i64>) -> (&[f32], &[f32]) {
         let strips = strips.start as usize..strips.end as usize;
-        let insets = &self.insets[side][node as usize];
+        let insets = &self.insets[self.places[side]][node as usize];
         (&insets[strips.clone()], &self.covers[strips])
     }
 }
