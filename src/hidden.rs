@@ -1,10 +1,12 @@
 //! Hidden: the pixels that something opaque covers, on which no shadow is seen.
 
+mod card;
 pub(crate) mod inside;
 
 use core::ops::Range;
 
 use self::inside::sort_by_row;
+use crate::density::rounded::Rounded;
 use crate::grid::Grid;
 use crate::light::Projection;
 use crate::outline::Fineness;
@@ -217,21 +219,27 @@ impl Hidden {
             let cover = Shadow::project(&[shape], &Projection::in_place(0.0));
             cover.edges_into(CURVES, 1.0 / scale, &mut edges);
         }
-        let exact = match shape.cover {
-            Cover::Simple => shape.contours.iter().all(Contour::is_of_circles),
-            Cover::Rule(_) => shape.contours.iter().all(Contour::is_straight),
-        };
-        let margin = if exact { 0.0 } else { inside::FLATNESS };
-        let placed = edges
-            .iter()
-            .map(|edge| edge.mapped(scale, |p| p * scale - corner));
         let size = [self.grid.width(), self.grid.height()];
         let spans = &mut self.spans;
-        scratch
-            .inside
-            .find(placed, margin, size, |row, start, end| {
-                spans.push(Span { row, start, end });
-            });
+        let push = |row, start, end| spans.push(Span { row, start, end });
+        if let Some(card) = Rounded::of_loop(&edges) {
+            let card = Rounded {
+                min: card.min * scale - corner,
+                max: card.max * scale - corner,
+                radii: card.radii.map(|radius| radius * scale),
+            };
+            card::find(&card, size, push);
+        } else {
+            let exact = match shape.cover {
+                Cover::Simple => shape.contours.iter().all(Contour::is_of_circles),
+                Cover::Rule(_) => shape.contours.iter().all(Contour::is_straight),
+            };
+            let margin = if exact { 0.0 } else { inside::FLATNESS };
+            let placed = edges
+                .iter()
+                .map(|edge| edge.mapped(scale, |p| p * scale - corner));
+            scratch.inside.find(placed, margin, size, push);
+        }
         scratch.give(edges);
     }
 }

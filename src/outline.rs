@@ -293,18 +293,13 @@ impl Outline {
         self.loops.is_empty()
     }
 
-    pub(crate) fn edges(&self) -> impl Iterator<Item = &Edge> {
+    pub(crate) fn edges(&self) -> impl Iterator<Item = &Edge> + Clone {
         self.loops.iter().flatten()
     }
 
     /// The area inside, in square units.
     pub(crate) fn area(&self) -> f64 {
-        // Far from the origin the triangles' areas would cancel.
-        let origin = self.edges().next().map_or(DVec2::ZERO, Edge::from);
-        self.edges()
-            .map(|edge| edge.double_area(origin))
-            .sum::<f64>()
-            / 2.0
+        area(self.edges())
     }
 
     /// The smallest box that holds the outline.
@@ -383,6 +378,17 @@ fn is_convex_polygon(polygon: &[DVec2]) -> bool {
         .filter(|&i| (edge(i).x < 0.0) != (edge(i + 1).x < 0.0))
         .count();
     (turns_left || turns_right) && changes <= 2
+}
+
+/// The area inside of edges, positive where it is on their left with y pointing up.
+pub(crate) fn area<'a>(mut edges: impl Iterator<Item = &'a Edge> + Clone) -> f64 {
+    // Far from the origin the triangles' areas would cancel.
+    let origin = edges.clone().next().map_or(DVec2::ZERO, Edge::from);
+    edges
+        .by_ref()
+        .map(|edge| edge.double_area(origin))
+        .sum::<f64>()
+        / 2.0
 }
 
 /// The smallest box that holds edges.

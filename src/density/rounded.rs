@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::outline::{Edge, Outline};
+use crate::outline::{self, Edge, Outline};
 
 /// A rectangle along the axes with circular corners.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,13 +16,18 @@ pub(crate) struct Rounded {
 impl Rounded {
     /// The outline as a rounded rectangle, if it is one.
     pub(crate) fn of(outline: &Outline) -> Option<Self> {
-        let [edges] = outline.loops.as_slice() else {
-            return None;
-        };
+        match outline.loops.as_slice() {
+            [edges] => Self::of_loop(edges),
+            _ => None,
+        }
+    }
+
+    /// The loop as a rounded rectangle, if it is one.
+    pub(crate) fn of_loop(edges: &[Edge]) -> Option<Self> {
         if edges.len() > 8 {
             return None;
         }
-        let (min, max) = outline.bounds()?;
+        let (min, max) = outline::bounds(edges.iter())?;
         // What rounding may move an edge by.
         let slack = (max - min).max_element() * 1e-9;
         let corners = [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)];
@@ -54,7 +59,7 @@ impl Rounded {
             }
         }
         let rounded = Self { min, max, radii };
-        let area = outline.area();
+        let area = outline::area(edges.iter());
         ((rounded.area() - area).abs() <= 1e-6 * area).then_some(rounded)
     }
 
