@@ -7,12 +7,14 @@
 //!
 //! Error: that of the chords and of the cubics, kept within the tolerance by their number.
 
+mod columns;
 mod sides;
 
 use core::ops::Range;
 
 use fearless_simd::{Simd, SimdBase, f32x16};
 
+use self::columns::Columns;
 use self::sides::{Corners, Node, Strips};
 use super::chords::{Chords, GROUP, Height};
 use super::frame::Frame;
@@ -48,6 +50,8 @@ pub(crate) struct NinePatchScratch {
     /// Single strips, and groups that begin with the first strip, the second and the third.
     strips: [Strips; 1 + GROUP as usize],
     zones: [Zone; 2],
+    /// Columns of a row where they are some pixels apart.
+    columns: [Vec<f32>; 2],
 }
 
 /// The disc's chords from above to below: single strips, groups of strips, and single ones again.
@@ -99,6 +103,8 @@ struct Lattice {
     pitch: f64,
     /// Whether pixels are interpolated between them: otherwise there is one for each row of pixels.
     is_apart: bool,
+    /// The columns that are computed of a row.
+    columns: Columns,
     /// Strips from one to the next.
     strips: i64,
     /// Rows after `straight` up to so many more are like it: they are left out of the strips.
@@ -142,6 +148,7 @@ impl Lattice {
             start,
             pitch,
             is_apart,
+            columns: Columns::apart(between / CLOSER),
             strips,
             mirror,
             straight: 0,
@@ -196,6 +203,9 @@ impl Lattice {
 /// Strips where each row of pixels is computed, over the rows that cubics between them would need: without cubics fewer
 /// are enough.
 const ALIGNED: f64 = 2.0;
+
+/// Columns are so many times as close to each other as rows.
+const CLOSER: f64 = 1.15;
 
 /// Rows nearer to each other than this, in pixels, are not worth interpolating between.
 const NEAREST: f64 = 1.25;
@@ -260,7 +270,7 @@ pub(crate) fn fill<S: Simd>(
     let (kept, wanted) = (&mut scratch.nine_patch, &mut scratch.wanted);
     let lattice = Lattice::new(&shape, radius, options.tolerance.as_levels(), frame.phase.y);
     kept.begin(simd, &shape, radius, &lattice);
-    let zones = kept.lay_out(&shape, radius);
+    let zones = kept.lay_out(&shape, radius, &lattice);
     let middle = if zones == 2 {
         kept.zones[0].end..kept.zones[1].start
     } else {
@@ -339,7 +349,7 @@ impl NinePatchScratch {
     }
 
     /// Prepares the zones, two or one where discs meet both sides; their number.
-    fn lay_out(&mut self, shape: &Rounded, radius: f64) -> usize {
+    fn lay_out(&mut self, shape: &Rounded, radius: f64, lattice: &Lattice) -> usize {
         let [tl, tr, br, bl] = shape.radii;
         let left_end = shape.min.x + radius + tl.max(bl);
         let right_start = shape.max.x - radius - tr.max(br);
@@ -356,12 +366,13 @@ impl NinePatchScratch {
             zone.met = [!apart || index == 0, !apart || index == 1];
             zone.sides = [shape.min.x, shape.max.x].map(|x| (x - zone.start as f64) as f32);
             zone.which = [NONE; RING];
-            let width = ((zone.end - zone.start) as usize).next_multiple_of(BLOCK);
+            let width = ((zone.end - zone.start) as usize).next_multiple_of(2 * BLOCK);
             for (row, done) in zone.rows.iter_mut().zip(&mut zone.done) {
                 row.resize(width, 0.0);
                 done.resize(width / BLOCK, false);
             }
             zone.values.resize(width, 0.0);
+            lattice.columns.resize(&mut self.columns, width);
         }
         if apart { 2 } else { 1 }
     }
@@ -436,25 +447,29 @@ impl NinePatchScratch {
             strips: &self.strips,
             first: row * lattice.strips - lattice.first,
             met: zone.met,
-            sides: zone.sides,
+            sides: zone.sides.map(|side| side - lattice.columns.start()),
+            pitch: lattice.columns.pitch(),
         };
+        let columns = lattice.columns;
+        if !columns.are_pixels() {
+            let width = (zone.end - zone.start) as usize;
+            let count = columns.count(width).div_ceil(BLOCK);
+            reach.compute_all(simd, 0..count, &mut self.columns[0]);
+            columns.spread(simd, &mut self.columns, &mut zone.rows[slot]);
+            done.fill(true);
+            return slot;
+        }
         let mut block = blocks.start;
         while block < blocks.end {
-            if done[block] {
+            let ahead = &done[block..blocks.end];
+            if ahead[0] {
                 block += 1;
                 continue;
             }
-            let ahead = done[block..blocks.end].iter().take(5);
-            let missing = ahead.take_while(|done| !**done).count();
-            let at = block * BLOCK;
-            let densities = &mut zone.rows[slot][at..];
-            let count = match missing {
-                1 => reach.compute::<S, 1>(simd, at, densities),
-                2 | 4 => reach.compute::<S, 2>(simd, at, densities),
-                _ => reach.compute::<S, 3>(simd, at, densities),
-            };
-            done[block..block + count].fill(true);
-            block += count;
+            let missing = ahead.iter().take_while(|done| !**done).count();
+            reach.compute_all(simd, block..block + missing, &mut zone.rows[slot]);
+            done[block..block + missing].fill(true);
+            block += missing;
         }
         slot
     }
@@ -491,10 +506,27 @@ struct Reach<'a> {
     /// The strip below the row.
     first: i64,
     met: [bool; 2],
+    /// Where the sides are, and pixels from one column to the next; all from the first column.
     sides: [f32; 2],
+    pitch: f32,
 }
 
 impl Reach<'_> {
+    /// Computes blocks of columns.
+    #[inline(always)]
+    fn compute_all<S: Simd>(&self, simd: S, blocks: Range<usize>, densities: &mut [f32]) {
+        let mut block = blocks.start;
+        while block < blocks.end {
+            let at = block * BLOCK;
+            let densities = &mut densities[at..];
+            block += match blocks.end - block {
+                1 => self.compute::<S, 1>(simd, at, densities),
+                2 | 4 => self.compute::<S, 2>(simd, at, densities),
+                _ => self.compute::<S, 3>(simd, at, densities),
+            };
+        }
+    }
+
     /// Computes some blocks of densities from column `at` on; their number.
     #[inline(always)]
     fn compute<S: Simd, const BLOCKS: usize>(
@@ -517,7 +549,7 @@ impl Reach<'_> {
             // How far inside the side each column is.
             let mut depths = [zero; BLOCKS];
             for (block, depth) in depths.iter_mut().enumerate() {
-                let column = lanes + (at + block * BLOCK) as f32;
+                let column = (lanes + (at + block * BLOCK) as f32) * self.pitch;
                 *depth = if side == 0 {
                     column - self.sides[0]
                 } else {
