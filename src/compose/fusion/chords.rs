@@ -389,15 +389,16 @@ impl Chords {
     }
 }
 
-/// The first node that is not above a height; most often the one that is guessed.
-fn first_from(nodes: &[Node], height: f64, guessed: usize) -> usize {
-    let is_above = |node: usize| nodes.get(node).is_some_and(|node| node.height < height);
-    let is_right = !is_above(guessed) && (guessed == 0 || is_above(guessed - 1));
-    if is_right {
-        guessed
-    } else {
-        nodes.partition_point(|node| node.height < height)
+/// The first node that is not above a height, by way of one that is near to it.
+fn first_from(nodes: &[Node], height: f64, near: usize) -> usize {
+    let mut first = near;
+    while first > 0 && nodes[first - 1].height >= height {
+        first -= 1;
     }
+    while first < nodes.len() && nodes[first].height < height {
+        first += 1;
+    }
+    first
 }
 
 /// The nodes between two angles.
