@@ -146,22 +146,21 @@ fn mean_of_profile<S: Simd>(
     // Farther away nothing changes but the differences' digits.
     let reach = larger + smaller + radius;
     let distance = distance.max(-reach).min(reach);
-    let at = [larger + smaller, larger - smaller].map(
-        #[inline(always)]
-        |span| {
-            second_integral(simd, (distance + span) * (1.0 / radius))
-                + second_integral(simd, (distance - span) * (1.0 / radius))
-        },
+    let scale = 1.0 / radius;
+    let (distance, outer, inner) = (
+        distance * scale,
+        (larger + smaller) * scale,
+        (larger - smaller) * scale,
     );
-    (at[0] - at[1]) * (radius * radius * 0.25) / (larger * smaller)
+    let outer = second_integral(simd, distance + outer) + second_integral(simd, distance - outer);
+    let inner = second_integral(simd, distance + inner) + second_integral(simd, distance - inner);
+    (outer - inner) * (radius * radius * 0.25) / (larger * smaller)
 }
 
 #[inline(always)]
 pub(super) fn wide_line<S: Simd>(simd: S, columns: f32x16<S>, line: &WideLine) -> f32x16<S> {
-    let spans = line.spans.map(
-        #[inline(always)]
-        |span| f32x16::splat(simd, span),
-    );
+    let [larger, smaller] = line.spans;
+    let spans = [f32x16::splat(simd, larger), f32x16::splat(simd, smaller)];
     mean_of_profile(simd, line.distance.at(columns), spans, line.radius) - 0.5
 }
 
@@ -408,15 +407,19 @@ pub(super) fn cut<S: Simd>(simd: S, columns: f32x16<S>, cut: &RowCut) -> f32x16<
     /// Ends nearer to each other than this are one: a quotient of two tiny differences has no digits.
     const STEEP: f32 = 1e-3;
     let half = f32x16::splat(simd, 0.5);
-    let [from, to] = cut.ends.map(|end| end.at(columns));
+    let (from, to) = (cut.ends[0].at(columns), cut.ends[1].at(columns));
     let width = cut.ends[1].start - cut.ends[0].start;
     if width.abs() < STEEP {
         return ((from + to) * half).max(-half).min(half) * cut.height;
     }
-    let integral = |x: f32x16<S>| {
-        let inside = x.max(-half).min(half);
-        // Half the square within, a line of slope 1/2 beyond.
-        half * inside * inside + (x.abs() - inside.abs()) * half
-    };
-    (integral(to) - integral(from)) * (cut.height / width)
+    (held_integral(simd, to) - held_integral(simd, from)) * (cut.height / width)
+}
+
+/// The integral of x held between the square's two sides.
+#[inline(always)]
+fn held_integral<S: Simd>(simd: S, x: f32x16<S>) -> f32x16<S> {
+    let half = f32x16::splat(simd, 0.5);
+    let inside = x.max(-half).min(half);
+    // Half the square within, a line of slope 1/2 beyond.
+    half * inside * inside + (x.abs() - inside.abs()) * half
 }
