@@ -20,6 +20,7 @@ mod settle;
 mod sink;
 pub(crate) mod strips;
 mod tangents;
+mod tilted;
 mod umbra;
 
 use core::f64::consts::FRAC_2_PI;

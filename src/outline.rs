@@ -381,14 +381,10 @@ fn is_convex_polygon(polygon: &[DVec2]) -> bool {
 }
 
 /// The area inside of edges, positive where it is on their left with y pointing up.
-pub(crate) fn area<'a>(mut edges: impl Iterator<Item = &'a Edge> + Clone) -> f64 {
+pub(crate) fn area<'a>(edges: impl Iterator<Item = &'a Edge> + Clone) -> f64 {
     // Far from the origin the triangles' areas would cancel.
     let origin = edges.clone().next().map_or(DVec2::ZERO, Edge::from);
-    edges
-        .by_ref()
-        .map(|edge| edge.double_area(origin))
-        .sum::<f64>()
-        / 2.0
+    edges.map(|edge| edge.double_area(origin)).sum::<f64>() / 2.0
 }
 
 /// The smallest box that holds edges.

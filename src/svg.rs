@@ -5,6 +5,7 @@ use core::fmt::Write;
 use glam::DVec2;
 
 use crate::mesh::{MeshVertex, ShadowMesh};
+use crate::tone::Color;
 
 /// Vertices of triangles lie on multiples of this many pixels: Skia's rasteriser rounds to 64ths, and where the text
 /// gives it anything else it may count a pixel centre that is within a 64th of an edge twice or not at all.
@@ -39,6 +40,15 @@ pub(crate) fn number(value: f64, decimals: usize) -> String {
 
 fn opacity(value: f64) -> String {
     number(value, 4)
+}
+
+/// An attribute for a colour, none for black, which is what SVG takes without.
+fn painted(attribute: &str, color: Color) -> String {
+    let Color { r, g, b, .. } = color;
+    match Color::rgb(r, g, b) {
+        Color::BLACK => String::new(),
+        color => format!(" {attribute}=\"{color}\""),
+    }
 }
 
 impl Svg {
@@ -101,15 +111,15 @@ impl Svg {
         self.defs.push('\n');
     }
 
-    /// Draws the triangles of a mesh in black, densities times `weight` as opacity. They are to be in a group without
+    /// Draws the triangles of a mesh in one colour, densities times `weight` as opacity. They are to be in a group without
     /// antialiasing: each pixel centre is then in one triangle and there are no seams.
-    pub(crate) fn draw_mesh(&mut self, mesh: &ShadowMesh, weight: f64) {
+    pub(crate) fn draw_mesh(&mut self, mesh: &ShadowMesh, weight: f64, color: Color) {
         for triangle in mesh.triangles() {
-            self.draw_triangle(triangle, weight);
+            self.draw_triangle(triangle, weight, color);
         }
     }
 
-    fn draw_triangle(&mut self, triangle: [MeshVertex; 3], weight: f64) {
+    fn draw_triangle(&mut self, triangle: [MeshVertex; 3], weight: f64, color: Color) {
         let step = GRID / self.scale;
         let at = triangle
             .map(|vertex| (DVec2::from(vertex.position.map(f64::from)) / step).round() * step);
@@ -139,7 +149,8 @@ impl Svg {
         let slope = (ac.perp() * -db + ab.perp() * dc) / ab.perp_dot(ac);
         if opacity(low) == opacity(high) || !slope.is_finite() {
             self.draw(&format!(
-                "<path fill-opacity=\"{}\" d=\"{data}\"/>",
+                "<path{} fill-opacity=\"{}\" d=\"{data}\"/>",
+                painted("fill", color),
                 opacity(f64::midpoint(low, high))
             ));
             return;
@@ -151,9 +162,10 @@ impl Svg {
         let end = start + slope * ((high - low) / slope.length_squared());
         let id = self.gradients;
         self.gradients += 1;
+        let paint = painted("stop-color", color);
         self.define(&format!(
             "<linearGradient id=\"g{id}\" gradientUnits=\"userSpaceOnUse\" x1=\"{}\" y1=\"{}\" x2=\"{}\" y2=\"{}\">\
-             <stop stop-opacity=\"{}\"/><stop offset=\"1\" stop-opacity=\"{}\"/></linearGradient>",
+             <stop{paint} stop-opacity=\"{}\"/><stop{paint} offset=\"1\" stop-opacity=\"{}\"/></linearGradient>",
             self.coordinate(start.x),
             self.coordinate(start.y),
             self.coordinate(end.x),
@@ -219,6 +231,7 @@ mod tests {
                 vertex(3.0, 8.0, 0.25),
             ],
             1.0,
+            Color::BLACK,
         );
         let text = svg.finish([10.0, 10.0], DVec2::ZERO, DVec2::splat(10.0));
         // Density is constant along (3, 8), so the gradient runs across it: from (0, 0) to the foot of (10, 0).

@@ -4,7 +4,9 @@
 
 use core::f32::consts::PI;
 
-use penumbral::{Grid, Light, PixelOptions, Pose, Shape, TiltedShadow};
+use penumbral::{
+    Grid, Light, MeshVertex, PixelOptions, Pose, ShadowMesh, Shape, TiltedShadow, Tolerance,
+};
 
 const LIGHT: [f64; 3] = [80.0, 30.0, 300.0];
 const LIGHT_RADIUS: f64 = 120.0;
@@ -173,4 +175,89 @@ fn casters_below_the_ground_or_above_the_light_hide_nothing() {
     for density in drawn(&through, [160, 140]) {
         assert!((0.0..=1.0).contains(&density));
     }
+}
+
+/// The largest difference in levels between a mesh and the closed form, on a lattice of samples in every triangle and on a grid of
+/// pixels that holds the shadow.
+fn mesh_error(mesh: &ShadowMesh, shadow: &TiltedShadow) -> f64 {
+    const PARTS: u8 = 6;
+    let mut worst: f64 = 0.0;
+    for corners in mesh.triangles() {
+        for i in 0..=PARTS {
+            for j in 0..=PARTS - i {
+                let weights = [i, j, PARTS - i - j].map(|part| f64::from(part) / f64::from(PARTS));
+                let sum = |of: fn(&MeshVertex) -> f32| -> f64 {
+                    let parts = corners.iter().zip(weights);
+                    parts
+                        .map(|(vertex, weight)| f64::from(of(vertex)) * weight)
+                        .sum()
+                };
+                let at = [sum(|v| v.position[0]) as f32, sum(|v| v.position[1]) as f32];
+                let density = sum(|v| v.density);
+                worst = worst.max((density - shadow.density_at(at)).abs());
+            }
+        }
+    }
+    let bounds = shadow.bounds().unwrap();
+    let origin = bounds.min.map(|v| v - 2.0);
+    let size = [0, 1].map(|i| (bounds.max[i] - origin[i]) as u32 + 2);
+    let grid = Grid::new(origin, size, 1.0).unwrap();
+    let mut densities = vec![0.0; size[0] as usize * size[1] as usize];
+    mesh.rasterize(&grid, &mut densities).unwrap();
+    for (index, density) in densities.iter().enumerate() {
+        let pixel = [index as u32 % size[0], index as u32 / size[0]];
+        let at = [0, 1].map(|i| origin[i] + pixel[i] as f32 + 0.5);
+        worst = worst.max((f64::from(*density) - shadow.density_at(at)).abs());
+    }
+    worst * 255.0
+}
+
+#[test]
+fn meshes_keep_their_tolerance_through_the_whole_flip() {
+    for levels in [1.0_f32, 4.0] {
+        let mut most = 0;
+        for degrees in (0..=180).step_by(5) {
+            let shadow = flip(60.0, f64::from(degrees), [1.0, 0.4]);
+            let mesh = shadow.mesh(Tolerance::levels(levels).unwrap());
+            let error = mesh_error(&mesh, &shadow);
+            let count = mesh.indices().len() / 3;
+            most = most.max(count);
+            println!(
+                "{degrees} degrees: {count} triangles, {error:.3} levels, {:.3} stated",
+                mesh.error_levels()
+            );
+            assert!(mesh.is_complete(), "{degrees} degrees");
+            assert!(
+                error <= f64::from(levels),
+                "{degrees} degrees: {error} levels"
+            );
+        }
+        println!("{levels} levels: {most} triangles at most");
+    }
+}
+
+#[test]
+fn meshes_of_casters_that_touch_the_ground_say_so() {
+    let hinged = flip(20.0, 90.0, [0.0, 1.0]);
+    let mesh = hinged.mesh(Tolerance::levels(2.0).unwrap());
+    println!(
+        "{} triangles, {} levels",
+        mesh.indices().len() / 3,
+        mesh.error_levels()
+    );
+    assert!(!mesh.is_complete());
+    // All but a few pixels about the two points where the penumbra begins are right.
+    let bounds = hinged.bounds().unwrap();
+    let size = [0, 1].map(|i| (bounds.max[i] - bounds.min[i]) as u32 + 1);
+    let grid = Grid::new(bounds.min, size, 1.0).unwrap();
+    let mut densities = vec![0.0; size[0] as usize * size[1] as usize];
+    mesh.rasterize(&grid, &mut densities).unwrap();
+    let mut wrong = 0;
+    for (index, density) in densities.iter().enumerate() {
+        let pixel = [index as u32 % size[0], index as u32 / size[0]];
+        let at = [0, 1].map(|i| bounds.min[i] + pixel[i] as f32 + 0.5);
+        let error = (f64::from(*density) - hinged.density_at(at)).abs() * 255.0;
+        wrong += u32::from(error > 2.0);
+    }
+    assert!(wrong <= 8, "{wrong} pixels");
 }

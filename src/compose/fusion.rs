@@ -34,13 +34,13 @@ pub enum Overlap {
     SourceOver,
 }
 
-/// Casts whose shadows may overlap, from the strongest to the weakest; alone if there is but one. What is drawn over the others
+/// Casts whose shadows may overlap on pixels of which there are `per_unit` a scene unit, from the strongest to the weakest; alone if there is but one. What is drawn over the others
 /// whatever it hides is alone, too: an image's rays are stopped here and there.
-pub(super) fn groups(casts: &[Cast], overlap: Overlap) -> Vec<Vec<&Cast>> {
+pub(super) fn groups(casts: &[Cast], overlap: Overlap, per_unit: f64) -> Vec<Vec<&Cast>> {
     let is_alone =
         |cast: &Cast| overlap == Overlap::SourceOver || matches!(cast.shadow, AnyShadow::Alpha(_));
     let boxed = casts.iter().enumerate().filter_map(|(index, cast)| {
-        let (min, max) = cast.shadow.reach(1.0)?;
+        let (min, max) = cast.shadow.reach(per_unit)?;
         (!is_alone(cast)).then_some((min, max, (index, cast)))
     });
     let mut groups: Vec<Vec<&Cast>> = overlapping(boxed.collect())

@@ -101,7 +101,11 @@ impl GroundShadows<'_> {
             stride: width as usize,
             put: |pixel: &mut f32, held: f32| *pixel += (1.0 - *pixel) * held,
         };
-        for group in groups(&self.casts, self.scene.overlap()) {
+        for group in groups(
+            &self.casts,
+            self.scene.overlap(),
+            self.grid.pixels_per_unit(),
+        ) {
             fusion::draw(&group, &self.grid, options, scratch, &mut sink);
         }
     }
@@ -117,7 +121,11 @@ impl GroundShadows<'_> {
         scratch: &mut Scratch,
     ) -> Result<()> {
         let tone = self.scene.tone();
-        for group in groups(&self.casts, self.scene.overlap()) {
+        for group in groups(
+            &self.casts,
+            self.scene.overlap(),
+            self.grid.pixels_per_unit(),
+        ) {
             // Alone, a cast needs no density between its method and the pixels.
             let weight = match group.as_slice() {
                 [alone] => alone.weight() as f32,

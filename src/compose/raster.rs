@@ -385,7 +385,7 @@ impl Renderer {
                 stride: layer.grid.width() as usize,
                 put: |passed: &mut f32, held: f32| *passed *= 1.0 - strength * held,
             };
-            for group in groups(&casts, job.scene.overlap()) {
+            for group in groups(&casts, job.scene.overlap(), layer.grid.pixels_per_unit()) {
                 fusion::draw(&group, &layer.grid, &options, &mut self.scratch, &mut sink);
             }
         }

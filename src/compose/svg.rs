@@ -23,17 +23,14 @@ impl Scene {
     /// exact one, where it is wide against a pixel, and the rounding of what shows it. Coordinates have fixed decimals and
     /// everything has its place, so that the text can be a snapshot.
     ///
-    /// Casters of several elevations are taken as independent of each other here.
+    /// Casters of several elevations are taken as independent of each other here, and below 3 pixels of penumbra radius tilted
+    /// ones are seen at the pixels' centres.
     ///
     /// # Errors
-    /// [`Error::NotInSvg`] for tilted surfaces, images, coloured shadows and linear blending.
+    /// [`Error::NotInSvg`] for images and linear blending.
     pub fn to_svg(&self, tolerance: Tolerance) -> Result<String> {
         let has = |is: fn(&Form) -> bool| self.surfaces().iter().any(|surface| is(surface.form()));
         let missing = [
-            (
-                "a tilted surface",
-                has(|form| matches!(form, Form::Posed(_))),
-            ),
             ("an image", has(|form| matches!(form, Form::Image(..)))),
             (
                 "linear blending",
@@ -96,7 +93,8 @@ impl Writer<'_> {
         let Color { r, g, b, .. } = surface.fill();
         let fill = Color::rgb(r, g, b);
         let weight = number(f64::from(surface.weight()), 4);
-        let level = if self.stage.is_shaded(receiver)? {
+        let is_posed = matches!(surface.form(), Form::Posed(_));
+        let level = if !is_posed && self.stage.is_shaded(receiver)? {
             self.level(receiver)?
         } else {
             None
@@ -152,13 +150,16 @@ impl Writer<'_> {
     fn draw_casts(&self, casts: &[Cast], strength: f64, svg: &mut Svg) {
         svg.draw(&format!("<g opacity=\"{}\">", number(strength, 4)));
         for cast in casts {
-            let AnyShadow::Level(shadow) = &cast.shadow else {
-                continue;
-            };
-            svg.draw("<g shape-rendering=\"crispEdges\">");
             // What a faint shadow may be wrong by, the picture is wrong by less.
             let tolerance = self.tolerance.divided(strength * cast.weight());
-            svg.draw_mesh(&self.averaged(shadow).mesh(tolerance), cast.weight());
+            let mesh = match &cast.shadow {
+                AnyShadow::Level(shadow) => self.averaged(shadow).mesh(tolerance),
+                AnyShadow::Tilted(shadow) => shadow.mesh(tolerance),
+                // Refused before.
+                AnyShadow::Alpha(_) => continue,
+            };
+            svg.draw("<g shape-rendering=\"crispEdges\">");
+            svg.draw_mesh(&mesh, cast.weight(), self.scene.tone().color());
             svg.draw("</g>");
         }
         svg.draw("</g>");

@@ -4,14 +4,26 @@ use std::collections::HashMap;
 
 use glam::DVec2;
 
-use super::{area, lines};
+use super::{area, lines, tilted};
 use crate::outline::{Edge, Outline, clip_to_box};
+use crate::tilted::Circle;
 
-/// The density at points in any order. The plane is cut into square cells, and the first point in a cell leaves it with
-/// the edges that a disc about any of its points can meet.
+/// The density at points in any order.
 pub(crate) struct Field {
-    edges: Vec<Edge>,
+    /// The penumbra radius, or the least that counts.
     radius: f64,
+    source: Source,
+}
+
+enum Source {
+    Level(Cells),
+    Tilted(Vec<Vec<Circle>>),
+}
+
+/// The plane is cut into square cells, and the first point in a cell leaves it with the edges that a disc about any of its
+/// points can meet.
+struct Cells {
+    edges: Vec<Edge>,
     side: f64,
     cells: HashMap<[i64; 2], Vec<Edge>>,
     spare: Vec<Edge>,
@@ -25,11 +37,21 @@ impl Field {
             .bounds()
             .map_or(0.0, |(min, max)| (max - min).max_element());
         Self {
-            edges: outline.edges().copied().collect(),
             radius,
-            side: radius.max(extent / CELLS),
-            cells: HashMap::new(),
-            spare: Vec::new(),
+            source: Source::Level(Cells {
+                edges: outline.edges().copied().collect(),
+                side: radius.max(extent / CELLS),
+                cells: HashMap::new(),
+                spare: Vec::new(),
+            }),
+        }
+    }
+
+    /// Of a caster of many radii; the smallest ones that count are `radius`.
+    pub(crate) fn of_tilted(loops: Vec<Vec<Circle>>, radius: f64) -> Self {
+        Self {
+            radius,
+            source: Source::Tilted(loops),
         }
     }
 
@@ -39,21 +61,30 @@ impl Field {
     }
 
     pub(crate) fn at(&mut self, point: DVec2) -> f64 {
+        match &mut self.source {
+            Source::Level(cells) => cells.at(point, self.radius),
+            Source::Tilted(loops) => tilted::at_point(loops, point),
+        }
+    }
+}
+
+impl Cells {
+    fn at(&mut self, point: DVec2, radius: f64) -> f64 {
         // Clipping costs about as much as it saves where there are few edges.
         const FEW: usize = 12;
         if self.edges.len() <= FEW || self.side == 0.0 {
-            return at_point(&self.edges, point, self.radius);
+            return at_point(&self.edges, point, radius);
         }
         let index = (point / self.side).floor();
         let key = [index.x as i64, index.y as i64];
         let cell = self.cells.entry(key).or_insert_with(|| {
-            let min = index * self.side - self.radius;
-            let max = min + self.side + 2.0 * self.radius;
+            let min = index * self.side - radius;
+            let max = min + self.side + 2.0 * radius;
             let mut clipped = Vec::new();
             clip_to_box(&self.edges, min, max, &mut self.spare, &mut clipped);
             clipped
         });
-        at_point(cell, point, self.radius)
+        at_point(cell, point, radius)
     }
 }
 

@@ -6,6 +6,7 @@ use glam::DVec2;
 
 use super::ShadowMesh;
 use crate::svg::{Svg, number};
+use crate::tone::Color;
 
 impl ShadowMesh {
     /// The mesh as Wavefront OBJ: a vertex has its density as z, so that a viewer shows it as a relief, and the group is
@@ -42,7 +43,7 @@ pub fn meshes_to_svg(meshes: &[ShadowMesh]) -> String {
     let mut bounds: Option<(DVec2, DVec2)> = None;
     for mesh in meshes {
         svg.draw("<g shape-rendering=\"crispEdges\">");
-        svg.draw_mesh(mesh, 1.0);
+        svg.draw_mesh(mesh, 1.0, Color::BLACK);
         svg.draw("</g>");
         for vertex in &mesh.vertices {
             let p = DVec2::from(vertex.position.map(f64::from));

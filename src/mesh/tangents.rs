@@ -122,7 +122,12 @@ const SHARPEST: f64 = 0.2;
 /// The unit normal of the line that touches both circles on the left (`side` 1) or right (-1) of the way from one to the
 /// other: its part along the way is the difference of the radii over the distance. Where one circle holds the other no
 /// line touches both, and the normal points along the way.
-fn tangent_normal(from: ProjectionCircle, to: ProjectionCircle, share: f64, side: f64) -> DVec2 {
+pub(super) fn tangent_normal(
+    from: ProjectionCircle,
+    to: ProjectionCircle,
+    share: f64,
+    side: f64,
+) -> DVec2 {
     let way = to.center - from.center;
     let distance = way.length();
     if distance == 0.0 {

@@ -1,0 +1,178 @@
+//! Meshes of casters that are not parallel to the light: the tangent construction with circles of many radii.
+
+use core::f64::consts::TAU;
+
+use glam::DVec2;
+use libm::{cos, sin};
+
+use super::profile::{Knot, Pieces};
+use super::refine::Refinement;
+use super::tangents::{ProjectionCircle, tangent_loops, tangent_normal};
+use super::{COARSEST_RING, MeshOptions, NARROWEST, RING_FLATNESS, SLACK, ShadowMesh};
+use crate::density::Field;
+use crate::error::MAX_COORDINATE;
+use crate::outline::{Winding, resolve_loops};
+use crate::path::arc_steps;
+use crate::tilted::{Circle, TiltedShadow};
+
+/// The smallest radius for which there are rings, over the largest one.
+const SMALLEST: f64 = 1.0 / 64.0;
+
+/// The smallest radius that samples go by: triangles where it is smaller are small themselves.
+const SAMPLED: f64 = 1.0 / 8.0;
+
+impl TiltedShadow {
+    /// Triangles with a density at each vertex, within the tolerance of [`TiltedShadow::density_at`] wherever they are
+    /// interpolated and outside of them, unless the mesh says that it is not [complete](ShadowMesh::is_complete).
+    ///
+    /// It is not complete where the caster touches the receiver, since the penumbra narrows there to nothing: what is wrong
+    /// is as small as `f32` allows. The shadow of a caster that reaches the light's plane has no end, and no mesh: it comes empty
+    /// and with an error of 255 levels.
+    ///
+    /// ```
+    /// use penumbral::{Light, Pose, Shape, Tolerance};
+    ///
+    /// let card = Shape::rect(50.0, 60.0, 60.0, 40.0)?;
+    /// let flipping = Pose::turned(40.0, [80.0, 80.0], [0.0, 1.0], 0.6)?;
+    /// let light = Light::new([80.0, 30.0, 300.0], 120.0)?;
+    /// let mesh = light.cast_posed(&card, &flipping, 0.0)?.mesh(Tolerance::levels(2.0)?);
+    /// assert!(mesh.is_complete() && mesh.error_levels() <= 2.0);
+    /// # Ok::<(), penumbral::Error>(())
+    /// ```
+    #[must_use]
+    pub fn mesh(&self, options: impl Into<MeshOptions>) -> ShadowMesh {
+        let options = options.into();
+        let Some((min, max)) = self.hull() else {
+            return ShadowMesh::empty();
+        };
+        let reach = min.abs().max(max.abs()).max_element();
+        let nothing = ShadowMesh {
+            error_levels: 255.0,
+            complete: false,
+            ..ShadowMesh::empty()
+        };
+        if reach >= MAX_COORDINATE {
+            return nothing;
+        }
+        // As for level casters: about a centre that `f32` holds.
+        let center = min.midpoint(max).as_vec2().as_dvec2();
+        let place = |circle: &Circle| circle.placed(1.0, center);
+        let seen = Self {
+            loops: self
+                .loops
+                .iter()
+                .map(|circles| circles.iter().map(place).collect())
+                .collect(),
+            plane: self.plane.each_ref().map(place),
+        };
+        let circles: Vec<Vec<ProjectionCircle>> = seen
+            .loops
+            .iter()
+            .map(|circles| circles.iter().map(projected).collect())
+            .collect();
+        let radii = circles.iter().flatten().map(|circle| circle.radius);
+        let (least, most) = radii.fold((f64::MAX, 0.0), |(least, most), radius| {
+            (radius.min(least), radius.max(most))
+        });
+        let step = reach * f64::from(f32::EPSILON);
+        if most < step * NARROWEST {
+            return nothing;
+        }
+        let radius = least.max(most * SMALLEST);
+        let levels = options.tolerance.as_levels();
+        let share = (RING_FLATNESS * levels).min(COARSEST_RING);
+        let facing = seen.facing([min - center, max - center]);
+        let rings = match facing.filter(|_| least == radius) {
+            Some(faces_up) => {
+                let circles: Vec<_> = circles
+                    .into_iter()
+                    .map(|circles| if faces_up { circles } else { reversed(circles) })
+                    .collect();
+                let pieces = Pieces::within(levels / 255.0 * SLACK);
+                let ring = |knot: &Knot| (*knot, tangent_loops(&circles, knot.t, radius * share));
+                pieces.knots.iter().map(ring).collect()
+            }
+            None => {
+                // Parts of the shadow see the caster from above, and others from below; or all rings meet where the caster
+                // touches its receiver: the outermost is all that is known of them.
+                let knot = |t: f64| Knot {
+                    t,
+                    value: f64::from(u8::from(t > 0.0)),
+                };
+                vec![
+                    (knot(-1.0), reached(&circles, share)),
+                    (knot(1.0), Vec::new()),
+                ]
+            }
+        };
+        let field = Field::of_tilted(seen.loops, least.max(most * SAMPLED));
+        Refinement::new(field, options, rings).run(center, step, 0.0)
+    }
+
+    /// Whether all points of a box see the caster's loops turn left where y points up, or all of them right, or some so and others
+    /// so.
+    fn facing(&self, [min, max]: [DVec2; 2]) -> Option<bool> {
+        // Seen from a point, the caster's plane is mapped onto the light's by these three: the sign of their determinant tells. It is
+        // linear in the point.
+        let turns_left = |point: DVec2| {
+            let [origin, x, y] = self.plane.map(|circle| {
+                let offset = circle.center - circle.scale * point;
+                offset.extend(circle.radius)
+            });
+            origin.dot(x.cross(y)) > 0.0
+        };
+        let first = turns_left(min);
+        let others = [max, DVec2::new(min.x, max.y), DVec2::new(max.x, min.y)];
+        others
+            .into_iter()
+            .all(|point| turns_left(point) == first)
+            .then_some(first)
+    }
+}
+
+/// The loops round all that a light seen through a caster's edges reaches: the circles round its vertices, what lies between two
+/// neighbours and the caster as its vertices' centres have it. Chords are within `share` of their circle's radius.
+fn reached(circles: &[Vec<ProjectionCircle>], share: f64) -> Vec<Vec<DVec2>> {
+    let mut parts = Vec::new();
+    let mut push = |mut points: Vec<DVec2>| {
+        let nexts = points.iter().cycle().skip(1);
+        let area: f64 = points.iter().zip(nexts).map(|(a, b)| a.perp_dot(*b)).sum();
+        if area < 0.0 {
+            points.reverse();
+        }
+        parts.push(points);
+    };
+    for of_loop in circles {
+        push(of_loop.iter().map(|circle| circle.center).collect());
+        for (&from, &to) in of_loop.iter().zip(of_loop.iter().cycle().skip(1)) {
+            let steps = arc_steps(from.radius, TAU, share * from.radius);
+            let at = |step: u32| {
+                let angle = TAU * f64::from(step) / f64::from(steps);
+                from.center + DVec2::new(cos(angle), sin(angle)) * from.radius
+            };
+            push((0..steps).map(at).collect());
+            if from.center.distance(to.center) > (from.radius - to.radius).abs() {
+                let [left, right] = [1.0, -1.0].map(|side| tangent_normal(from, to, 1.0, side));
+                push(vec![
+                    from.center + left * from.radius,
+                    from.center + right * from.radius,
+                    to.center + right * to.radius,
+                    to.center + left * to.radius,
+                ]);
+            }
+        }
+    }
+    resolve_loops(&parts, Winding::Positive, true)
+}
+
+fn projected(circle: &Circle) -> ProjectionCircle {
+    ProjectionCircle {
+        center: circle.center / circle.scale,
+        radius: circle.radius / circle.scale,
+    }
+}
+
+fn reversed(mut circles: Vec<ProjectionCircle>) -> Vec<ProjectionCircle> {
+    circles.reverse();
+    circles
+}
