@@ -12,8 +12,10 @@
 //! | `mesh`, `raster` | a shadow's triangles at a tolerance in levels; their densities on pixels | shape (/ levels) |
 //! | `mesh-into` | the same into buffers of the caller's, again (warm) and for a shadow not seen before (new) | shape / warm or new / levels |
 //! | `render` | whole pictures of scenes | scene |
+//! | `layers` | pictures of 3840 x 2160 with so many cards, side by side or piled up at random | order / cards |
 //!
-//! The penumbra radius r is in pixels, whatever the scale. Throughputs count the pixels of the shadow's bounds.
+//! The penumbra radius r is in pixels, whatever the scale. Throughputs count the pixels of the shadow's bounds; those of `layers`
+//! for each pixel that is seen the casters of whose light it sees a part hidden.
 //!
 //!     cargo bench --features scene -- --quick             # all, roughly, in minutes
 //!     cargo bench --features scene -- ^direct/            # one group
@@ -35,7 +37,7 @@ use criterion::{
 use penumbral::plan::Method;
 use penumbral::{
     Color, FillRule, Grid, Hidden, Light, MeshBuffers, Paint, Path, PixelOptions, Renderer, Scene,
-    Scratch, Shadow, Shape, Tolerance,
+    Scratch, Shadow, Shape, Surface, Tolerance, Tone,
 };
 use tiny_skia::Pixmap;
 
@@ -352,6 +354,121 @@ fn render(c: &mut Criterion) {
     group.finish();
 }
 
+/// Cards of one size at seven elevations: side by side, or anywhere.
+fn many(count: usize, piled: bool) -> Vec<Surface> {
+    let mut state = 1_u64;
+    let mut random = |most: f32| {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (state >> 40) as f32 / 16_777_216.0 * most
+    };
+    let card = |index: usize| {
+        let [x, y] = if piled {
+            [random(3720.0), random(2080.0)]
+        } else {
+            [
+                (index % 28) as f32 * 136.0 + 16.0,
+                (index / 28) as f32 * 96.0 + 16.0,
+            ]
+        };
+        let shape = Shape::rounded_rect(x, y, 104.0, 64.0, 8.0).unwrap();
+        Surface::new(shape, [1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0][index % 7])
+    };
+    (0..count).map(card).collect()
+}
+
+/// How many casters hide a part of the light from the pixels that are seen, added up over these.
+fn visible_penumbra(scene: &Scene, light: &Light) -> u64 {
+    let grid = scene.grid().unwrap();
+    let width = grid.width() as usize;
+    let mut order: Vec<&Surface> = scene.surfaces().iter().collect();
+    order.sort_by(|a, b| a.elevation().total_cmp(&b.elevation()));
+    let mut topmost = vec![0; width * grid.height() as usize];
+    let mut scratch = Scratch::new();
+    let mut densities = vec![0.0; topmost.len()];
+    // The pixels of a shadow, with its densities.
+    let mut each = |shadow: &Shadow, tell: &mut dyn FnMut(usize, f32)| {
+        let Some(bounds) = shadow.bounds() else {
+            return;
+        };
+        let [columns, rows] = [0, 1].map(|axis| {
+            let end = [grid.width(), grid.height()][axis];
+            let (min, max) = (bounds.min[axis] - 1.0, bounds.max[axis] + 1.0);
+            (min.max(0.0) as u32).min(end)..(max.max(0.0) as u32 + 1).min(end)
+        });
+        if columns.is_empty() || rows.is_empty() {
+            return;
+        }
+        let origin = [columns.start as f32, rows.start as f32];
+        let size = [columns.len() as u32, rows.len() as u32];
+        let window = Grid::new(origin, size, 1.0).unwrap();
+        let options = PixelOptions::default();
+        shadow
+            .fill_f32(&window, &mut densities, &options, &mut scratch)
+            .unwrap();
+        for row in 0..size[1] {
+            for column in 0..size[0] {
+                let pixel = (row + rows.start) as usize * width + (column + columns.start) as usize;
+                tell(pixel, densities[(row * size[0] + column) as usize]);
+            }
+        }
+    };
+    let overhead = Light::directional([0.0, 0.0], 0.0).unwrap();
+    for (rank, surface) in order.iter().enumerate() {
+        let cover = overhead.cast(surface.shape(), 1.0, 0.0).unwrap();
+        each(&cover, &mut |pixel, density| {
+            if density == 1.0 {
+                topmost[pixel] = rank + 1;
+            }
+        });
+    }
+    let mut receivers: Vec<f32> = order.iter().map(|surface| surface.elevation()).collect();
+    receivers.insert(0, 0.0);
+    let mut count = 0;
+    for caster in &order {
+        let mut elevations = receivers.clone();
+        elevations.dedup();
+        for below in elevations
+            .into_iter()
+            .filter(|&below| below < caster.elevation())
+        {
+            let shadow = light
+                .cast(caster.shape(), caster.elevation(), below)
+                .unwrap();
+            each(&shadow, &mut |pixel, density| {
+                let is_partial = density > 0.0 && density < 1.0;
+                count += u64::from(is_partial && receivers[topmost[pixel]] == below);
+            });
+        }
+    }
+    count
+}
+
+fn layers(c: &mut Criterion) {
+    let mut group = c.benchmark_group("layers");
+    group.sample_size(10);
+    let mut renderer = Renderer::new();
+    for (order, piled) in [("apart", false), ("piled", true)] {
+        for count in [150, 300, 600] {
+            let light = Light::new([1920.0, 0.0, 600.0], 800.0).unwrap();
+            let tone = Tone::new(0.19, 0.0).unwrap();
+            let mut scene = Scene::new([3840.0, 2160.0], light.clone())
+                .unwrap()
+                .with_tone(tone);
+            for surface in many(count, piled) {
+                scene.push(surface).unwrap();
+            }
+            let mut pixmap = Pixmap::new(3840, 2160).unwrap();
+            group.throughput(Throughput::Elements(visible_penumbra(&scene, &light)));
+            group.bench_function(BenchmarkId::new(order, count), |b| {
+                b.iter(|| renderer.render(black_box(&scene), &mut pixmap).unwrap());
+            });
+        }
+    }
+    group.finish();
+}
+
 /// There are hundreds of benches: each takes a second or two.
 fn brief() -> Criterion {
     Criterion::default()
@@ -363,6 +480,6 @@ fn brief() -> Criterion {
 criterion_group! {
     name = benches;
     config = brief();
-    targets = cast, methods, outputs, area, radius, cards, mesh, mesh_into, raster, render
+    targets = cast, methods, outputs, area, radius, cards, mesh, mesh_into, raster, render, layers
 }
 criterion_main!(benches);

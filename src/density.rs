@@ -12,6 +12,7 @@ pub(crate) mod exact;
 mod field;
 pub(crate) mod frame;
 pub(crate) mod grid;
+pub(crate) mod lanes;
 pub(crate) mod lines;
 pub(crate) mod nine_patch;
 pub(crate) mod quadrature;

@@ -8,6 +8,7 @@ use fearless_simd::{
 };
 
 use super::Sink;
+use super::lanes::NUMBERS;
 use crate::paint::Paint;
 use crate::tone::Color;
 
@@ -121,17 +122,6 @@ pub(crate) struct Ink {
 /// Pixels that are blended at once, and their bytes.
 const PIXELS: usize = 8;
 const BLOCK: usize = 4 * PIXELS;
-
-/// Each pixel's number in its block.
-const LANES: [f32; PIXELS] = {
-    let mut lanes = [0.0; PIXELS];
-    let mut lane = 0;
-    while lane < PIXELS {
-        lanes[lane] = lane as f32;
-        lane += 1;
-    }
-    lanes
-};
 
 /// The upper byte of 16 bits.
 const UPPER: u16 = 0xff00;
@@ -291,7 +281,7 @@ impl<S: Simd> Brush<S> {
     /// Blends the first `count` of a block's densities, and 0 onto other pixels, which leaves them as they are.
     #[inline(always)]
     fn blend_rest(&self, rest: &mut [u8], count: usize, densities: f32x8<S>) {
-        let lanes = f32x8::simd_from(self.simd, LANES);
+        let lanes = f32x8::from_slice(self.simd, &NUMBERS[..PIXELS]);
         let within = lanes.simd_lt(f32x8::splat(self.simd, count as f32));
         let densities = within.select(densities, f32x8::splat(self.simd, 0.0));
         let opacity = self.opacity(densities);

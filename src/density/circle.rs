@@ -8,6 +8,7 @@ use fearless_simd::{Simd, SimdBase, SimdFloat, f32x8, i32x8};
 use glam::DVec2;
 
 use super::frame::Frame;
+use super::lanes::NUMBERS;
 use super::rows::{Lattice, Points, Rows, Window};
 use super::{Each, PixelOptions, Sink, seen_columns};
 use crate::grid::Grid;
@@ -147,6 +148,7 @@ impl Profile {
         self.values.resize(count.next_multiple_of(LANES), 0.0);
         let zero = f32x8::splat(simd, 0.0);
         let last = f32x8::splat(simd, INTERVALS as f32);
+        let lanes = f32x8::from_slice(simd, &NUMBERS[..LANES]);
         for (index, values) in self
             .values
             .as_chunks_mut::<LANES>()
@@ -154,11 +156,7 @@ impl Profile {
             .iter_mut()
             .enumerate()
         {
-            let column = f32x8::from_fn(
-                simd,
-                #[inline(always)]
-                |lane| (skipped + index * LANES + lane) as f32,
-            );
+            let column = lanes + (skipped + index * LANES) as f32;
             let x = column * step + across;
             let distance = (x * x + down * down).sqrt();
             let place = ((distance - self.start) * self.per_unit)

@@ -8,7 +8,7 @@
 mod kernels;
 mod pieces;
 
-pub(crate) use kernels::{LANES, Wide, half_disc};
+pub(crate) use kernels::{Wide, half_disc};
 pub(crate) use pieces::each_line;
 
 use core::ops::Range;
@@ -17,6 +17,7 @@ use fearless_simd::{Simd, SimdBase, f32x16};
 use glam::DVec2;
 
 use super::Sink;
+use super::lanes::{LANES, lanes};
 use crate::outline::Edge;
 use kernels::{Ramp, RowArc, RowCut, RowLine, WideArc, WideLine};
 use pieces::Piece;
@@ -479,7 +480,7 @@ impl Stroke<'_> {
         // What a piece adds counts from the middle between what it is far left and far right.
         let middle = self.halves[0] - self.halves[1];
         let (weight, spread) = (self.line.weight as f32, self.line.spread as f32);
-        let mut columns = kernels::lanes(simd) + offset;
+        let mut columns = lanes(simd) + offset;
         if let [_] = self.columns {
             for values in values.chunks_exact_mut(LANES) {
                 let sum = f32x16::from_slice(simd, values) + (kernel(columns) + middle);

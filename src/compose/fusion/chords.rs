@@ -10,11 +10,12 @@ use fearless_simd::{Level, Simd, SimdBase, dispatch, f32x16};
 use glam::DVec2;
 use libm::{asin, floor};
 
+use crate::density::lanes::{LANES, lanes};
 use crate::density::quadrature;
 use crate::tilted::Circle;
 
 /// So many pixels of a row are worked on together.
-pub(super) const BLOCK: usize = 16;
+pub(super) const BLOCK: usize = LANES;
 
 /// Where the block of a point begins that is so far behind the origin, and the point's number in it. Blocks do not depend on
 /// what is asked for: nor do the bits of what is found.
@@ -420,12 +421,7 @@ impl Spans {
     /// How far behind its block's first one each point is, in the unit of the disc.
     #[inline(always)]
     fn lanes<S: Simd>(&self, simd: S) -> f32x16<S> {
-        let lanes = f32x16::from_fn(
-            simd,
-            #[inline(always)]
-            |lane| lane as f32,
-        );
-        lanes * self.factor
+        lanes(simd) * self.factor
     }
 
     /// A distance in pixels in the unit of the disc.

@@ -32,6 +32,10 @@ impl Mixer {
 
     /// `fill` where `passed` of the light reaches it, over `below` by `alpha`.
     pub(super) fn mixed(&self, fill: [u8; 3], below: [u8; 3], passed: f32, alpha: f32) -> [u8; 3] {
+        // Most pixels of a picture are lit and covered wholly.
+        if passed == 1.0 && alpha == 1.0 {
+            return fill;
+        }
         [0, 1, 2].map(|channel| {
             let [fill, below] = [fill, below].map(|of| self.decoded[usize::from(of[channel])]);
             let shadow = self.shadow[channel];

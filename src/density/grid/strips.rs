@@ -4,8 +4,10 @@
 //! and to all on their right: the y of its ends is rounded to such steps, so those of a closed loop cancel exactly, whatever
 //! part of the plane is looked at.
 
-use fearless_simd::{Simd, SimdBase, f32x16};
+use fearless_simd::{Simd, SimdBase};
 use glam::DVec2;
+
+use crate::density::lanes::lanes;
 
 /// Cells that are taken at once.
 pub(super) const BLOCK: usize = 16;
@@ -124,11 +126,7 @@ impl Strips {
             cells.add(at(top), at(bottom), (bottom - top) * self.full * line.side);
         }
         let mut cover = cells.cover;
-        let lanes = f32x16::from_fn(
-            simd,
-            #[inline(always)]
-            |lane| lane as f32,
-        );
+        let lanes = lanes(simd);
         let mut sum = 0;
         for (block, (((sums, deltas), crossed), before)) in sums
             .as_chunks_mut::<BLOCK>()

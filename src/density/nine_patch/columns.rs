@@ -3,14 +3,13 @@
 
 use fearless_simd::{Simd, SimdBase, f32x16};
 
+use crate::density::lanes::LANES;
+
 /// How many times the columns that are computed are halved in distance until there is one for each pixel.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Columns {
     halvings: u32,
 }
-
-/// Columns that are computed at once.
-const LANES: usize = 16;
 
 /// What a level needs left and right of the columns that it yields.
 const BEFORE: usize = 1;

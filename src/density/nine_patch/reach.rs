@@ -6,9 +6,10 @@ use fearless_simd::{Simd, SimdBase, f32x16};
 
 use super::sides::{Node, Strips};
 use crate::density::chords::{Chords, GROUP, Height};
+use crate::density::lanes::{LANES, lanes};
 
 /// Columns that are taken at once.
-pub(super) const BLOCK: usize = 16;
+pub(super) const BLOCK: usize = LANES;
 
 /// The disc's chords from above to below: single strips, groups of strips, and single ones again.
 #[derive(Debug, Default)]
@@ -90,11 +91,7 @@ impl Reach<'_> {
         densities: &mut [f32],
     ) -> usize {
         let zero = f32x16::splat(simd, 0.0);
-        let lanes = f32x16::from_fn(
-            simd,
-            #[inline(always)]
-            |lane| lane as f32,
-        );
+        let lanes = lanes(simd);
         let mut sums = [zero; BLOCKS];
         for side in 0..2 {
             if !self.met[side] {

@@ -4,8 +4,7 @@ use core::ops::Range;
 
 use fearless_simd::{Simd, SimdBase, SimdFloat, f32x16};
 
-/// Strips that are taken at once.
-const LANES: usize = 16;
+use crate::density::lanes::{LANES, lanes};
 
 /// Gauss's two nodes on 0 to 1: where in a strip its side is looked up.
 const NODES: [f32; 2] = [0.211_324_87, 0.788_675_1];
@@ -58,11 +57,7 @@ impl Strips {
         }
         let splat = |v: f32| f32x16::splat(simd, v);
         let (zero, top, bottom) = (splat(0.0), splat(sides[0].top), splat(sides[0].bottom));
-        let lanes = f32x16::from_fn(
-            simd,
-            #[inline(always)]
-            |lane| lane as f32,
-        );
+        let lanes = lanes(simd);
         for (block, covers) in covers.as_chunks_mut::<LANES>().0.iter_mut().enumerate() {
             let strip = lanes * high as f32 + (first + block * LANES * high) as f32;
             let start = (strip * pitch).max(top);

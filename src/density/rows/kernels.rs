@@ -7,9 +7,6 @@
 
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, f32x16};
 
-/// Pixels that a kernel takes at once. It is the same on every machine, so that all round alike.
-pub(crate) const LANES: usize = 16;
-
 const FRAC_1_PI: f32 = core::f32::consts::FRAC_1_PI;
 
 /// 1/4 - S(t)/π = v^1.5 q(v), v = 1 - |t|, S(t) the integral of sqrt(1 - u²) from 0 to t: a minimax fit of q, within
@@ -69,12 +66,6 @@ fn half_disc_at<S: Simd>(simd: S, x: f32x16<S>, y: f32x16<S>) -> f32x16<S> {
     let sine = u * (u2 * (u2 * (u2 * (u2 * e + d) + c) + b) + a);
     let angle = flat.select(sine, f32x16::splat(simd, 0.25) - sine);
     (x * height * (0.5 * FRAC_1_PI) + angle).copysign(y)
-}
-
-/// 0 to 15.
-#[inline(always)]
-pub(super) fn lanes<S: Simd>(simd: S) -> f32x16<S> {
-    f32x16::from_fn(simd, |lane| lane as f32)
 }
 
 /// A number that changes by the same step from pixel to pixel.

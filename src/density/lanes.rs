@@ -1,0 +1,23 @@
+//! The lanes of vectors.
+
+use fearless_simd::{Simd, SimdBase, f32x16};
+
+/// Numbers that a kernel takes at once. It is the same on every machine, so that all round alike.
+pub(crate) const LANES: usize = 16;
+
+/// Each lane's own number. From a list, as compilers make calls of closures that tell them.
+pub(crate) const NUMBERS: [f32; LANES] = {
+    let mut numbers = [0.0; LANES];
+    let mut lane = 0;
+    while lane < LANES {
+        numbers[lane] = lane as f32;
+        lane += 1;
+    }
+    numbers
+};
+
+/// 0 to 15.
+#[inline(always)]
+pub(crate) fn lanes<S: Simd>(simd: S) -> f32x16<S> {
+    f32x16::from_slice(simd, &NUMBERS)
+}
