@@ -115,7 +115,7 @@ impl Grid {
     }
 
     /// The part of the grid from column and row `first` to before `end`, in a buffer of its own.
-    #[cfg(any(feature = "raster", feature = "rayon"))]
+    #[cfg(feature = "raster")]
     pub(crate) fn window(&self, first: [u32; 2], end: [u32; 2]) -> Self {
         let width = end[0] - first[0];
         Self {
