@@ -199,6 +199,32 @@ fn corners_nearly_as_round_as_the_disc_keep_their_tolerance() {
     summary.finish();
 }
 
+#[test]
+fn the_tip_of_a_tilted_corner_as_round_as_the_disc_keeps_its_tolerance() {
+    // Its pixel was wrong by 1.018 levels while neighbours on all sides told of nothing.
+    let case = case(917_225);
+    let (mut scratch, mut summary) = (Scratch::new(), Summary::default());
+    let exact = densities(
+        &case.shadow,
+        &case.grid,
+        &by(Some(Method::Exact)),
+        &mut scratch,
+    );
+    let drawn = densities(
+        &case.shadow,
+        &case.grid,
+        &by(Some(Method::Grid)),
+        &mut scratch,
+    );
+    summary.add(
+        "tilted corner".to_owned(),
+        worst_of(&exact, &drawn),
+        0.5,
+        &case.label(917_225),
+    );
+    summary.finish();
+}
+
 /// Pills and ellipses a little longer than wide, seen by a disc as large as they: about their middle the density has tips that rows
 /// some pixels apart may miss.
 #[test]

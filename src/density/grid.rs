@@ -45,6 +45,10 @@ const LIMIT: f64 = 0.7;
 /// The same where the density is about 0 or 1. At the penumbra's ends it is 2.8 times the error between rows.
 const END_LIMIT: f64 = 1.0;
 
+/// Arcs whose radius is within this share of the disc's have a tip at their centre that is sharper than rows are apart: rows on both of
+/// its sides say nothing of it. One of 20,000 random shapes passed its tolerance there, by a fiftieth.
+const TIP: f64 = 0.07;
+
 /// Up to where a density is about 0.
 const END: f32 = 0.03;
 
@@ -67,6 +71,8 @@ pub(crate) struct GridScratch {
     ring: [Row; RING as usize],
     /// Columns of pixels that are drawn one by one between two rows.
     coarse: Vec<Range<i64>>,
+    /// The row and the column of each point that sees an arc of the disc's own radius all at once.
+    tips: Vec<[i64; 2]>,
     values: Vec<f32>,
 }
 
@@ -173,6 +179,14 @@ pub(crate) fn fill<S: Simd>(
     });
     kept.strips.end();
     kept.sums.begin(blocks, &kept.disc);
+    kept.tips.clear();
+    kept.tips.extend(placed(1.0).filter_map(|edge| match edge {
+        Edge::Arc(arc) if (arc.radius / radius - 1.0).abs() < TIP => {
+            let place = [arc.center.y / pitch, arc.center.x - frame.phase.x];
+            Some(place.map(|v| v.floor() as i64))
+        }
+        _ => None,
+    }));
     let mut weaver = Weaver {
         columns: columns.clone(),
         first,
@@ -352,6 +366,18 @@ impl Sums {
     }
 }
 
+/// Sorts ranges and joins those that touch.
+fn join(ranges: &mut Vec<Range<i64>>) {
+    ranges.sort_unstable_by_key(|range| range.start);
+    ranges.dedup_by(|next, range| {
+        let touches = next.start <= range.end;
+        if touches {
+            range.end = range.end.max(next.end);
+        }
+        touches
+    });
+}
+
 /// Sets the bits beside those that are set.
 fn widen(bits: &mut [u64]) {
     let mut before = 0;
@@ -468,7 +494,9 @@ impl Weaver<'_> {
         for row in new..=row + 2 {
             self.surprise(simd, row);
         }
-        let GridScratch { ring, coarse, .. } = &mut *self.kept;
+        let GridScratch {
+            ring, coarse, tips, ..
+        } = &mut *self.kept;
         let at = |offset: i64| &ring[(row + offset).rem_euclid(RING) as usize].surprises;
         coarse.clear();
         let near = self.near;
@@ -489,6 +517,18 @@ impl Weaver<'_> {
                 _ if start < end => coarse.push(start..end),
                 _ => {}
             }
+        }
+        for &[tip, column] in &*tips {
+            if (tip - row).abs() <= 1 {
+                let start = (column - near).max(self.columns.start);
+                let end = (column + near + 1).min(self.columns.end);
+                if start < end {
+                    coarse.push(start..end);
+                }
+            }
+        }
+        if !tips.is_empty() {
+            join(coarse);
         }
     }
 
