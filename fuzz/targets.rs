@@ -4,7 +4,7 @@
 
 use penumbral::plan::Method;
 use penumbral::{
-    Color, FillRule, Grid, Hidden, Light, Limits, MeshOptions, NinePatch, Paint, Path,
+    Bounds, Color, FillRule, Grid, Hidden, Light, Limits, MeshOptions, NinePatch, Paint, Path,
     PixelOptions, Renderer, Scene, Scratch, Shadow, Shape, Surface, Tolerance,
 };
 use tiny_skia::Pixmap;
@@ -397,7 +397,16 @@ pub(crate) fn mesh(data: &[u8]) {
         assert!(vertex.position.iter().all(|v| v.is_finite()));
         assert_density(f64::from(vertex.density));
     }
+    // The chords of a hard shadow's arcs are within 1e-5 of its extent: a triangle thinner than that may lie beside them.
+    let thinnest = if shadow.radius() == 0.0 {
+        4e-5 * shadow.bounds().map_or(0.0, extent)
+    } else {
+        0.0
+    };
     for corners in mesh.triangles().take(50) {
+        if height(corners.map(|corner| corner.position.map(f64::from))) < thinnest {
+            continue;
+        }
         let middle = [0, 1].map(|axis| {
             corners
                 .iter()
@@ -419,6 +428,23 @@ pub(crate) fn mesh(data: &[u8]) {
             );
         }
     }
+}
+
+/// The larger side of a box.
+fn extent(bounds: Bounds) -> f64 {
+    let side = |axis: usize| f64::from(bounds.max[axis] - bounds.min[axis]);
+    side(0).max(side(1))
+}
+
+/// A triangle's height on its longest side.
+fn height(corners: [[f64; 2]; 3]) -> f64 {
+    let way = |from: usize, to: usize| [0, 1].map(|axis| corners[to][axis] - corners[from][axis]);
+    let (a, b, c) = (way(0, 1), way(0, 2), way(1, 2));
+    let longest = [a, b, c]
+        .map(|[x, y]| x.hypot(y))
+        .into_iter()
+        .fold(0.0, f64::max);
+    (a[0] * b[1] - a[1] * b[0]).abs() / longest.max(f64::MIN_POSITIVE)
 }
 
 fn draw(scene: &Scene) -> Pixmap {

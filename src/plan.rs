@@ -1,5 +1,7 @@
 //! The cheapest method within a tolerance, and why it was chosen.
 
+mod mesh;
+
 use core::fmt;
 use core::ops::Range;
 use core::str::FromStr;
@@ -89,12 +91,7 @@ pub fn choose(shadow: &Shadow, tolerance: Tolerance, target: Target) -> Choice {
 pub fn candidates(shadow: &Shadow, tolerance: Tolerance, target: Target) -> [Option<Candidate>; 4] {
     match target {
         Target::Triangles => [
-            Some(Candidate {
-                method: Method::Mesh,
-                error_levels: tolerance.as_levels(),
-                cost_ns: 0.0,
-                why: "triangles are asked for",
-            }),
+            Some(mesh::candidate(shadow, tolerance.as_levels())),
             None,
             None,
             None,
@@ -134,6 +131,12 @@ pub struct Costs {
     pub exact: f64,
     /// The same where it is an average, over where it is not.
     pub exact_average: f64,
+    /// A rounded rectangle's triangles at one level, when its corners are new.
+    pub strips: f64,
+    /// A triangle of any other mesh at one level.
+    pub triangle: f64,
+    /// A triangle of a shadow without penumbra.
+    pub hard_triangle: f64,
 }
 
 /// One core with AVX-512.
@@ -147,6 +150,9 @@ pub const COSTS: Costs = Costs {
     rounded: 0.5,
     exact: 130.0,
     exact_average: 25.0,
+    strips: 1e7,
+    triangle: 4e4,
+    hard_triangle: 400.0,
 };
 
 /// What there is to draw, in pixels.
@@ -410,6 +416,15 @@ mod tests {
         let shadow = cast(&card, 8.0);
         let choice = choose(&shadow, Tolerance::ONE_LEVEL, Target::Triangles);
         assert_eq!(choice.method, Method::Mesh);
+        let cost = |shape: &Shape, radius: f32, levels: f32| {
+            let tolerance = Tolerance::levels(levels).unwrap();
+            let [mesh, ..] = candidates(&cast(shape, radius), tolerance, Target::Triangles);
+            mesh.unwrap().cost_ns
+        };
+        assert!(cost(&star(5), 8.0, 4.0) < cost(&star(5), 8.0, 1.0));
+        assert!(cost(&card, 8.0, 1.0) < cost(&star(5), 8.0, 1.0));
+        assert!(cost(&star(5), 8.0, 1.0) < cost(&star(20), 8.0, 1.0));
+        assert!((1.0..1e6).contains(&cost(&card, 0.0, 1.0)));
     }
 
     #[test]

@@ -84,7 +84,7 @@ fn cases() -> Vec<(&'static str, Result<(), Error>, &'static str)> {
         ("NotOpaque", scene().with_background(Color { a: 128, ..Color::WHITE }).map(drop), "background has the alpha 128 of 255: give an opaque colour"),
         ("NotInSvg", scene().with_tone(Tone::default().with_blending(Blending::Linear)).to_svg(Tolerance::ONE_LEVEL).map(drop), "linear blending cannot be written as SVG"),
         ("NotClipped", posed().clipped(&card()).map(drop), "a tilted surface and an image are not clipped"),
-        ("Scene", json("{"), "line 1, column 1, scene.?: EOF while parsing an object"),
+        ("Scene", json("{"), "line 1, column 1, scene: the text ends within an object"),
         ("Scene", json(r#"{"canvas": [1, 1], "sky": 1}"#), "line 1, column 24, scene.sky: unknown field `sky`"),
         ("Stopped", Renderer::new().render_while(&scene(), &mut pixmap(60), |_, _| false), "the drawing was stopped"),
     ];

@@ -95,9 +95,13 @@ fn mass_is_the_area_of_the_outline() {
     for (seed, mut random) in seeds("mass", 60) {
         let (name, shapes, lengths) = shapes(&mut random, 64.0);
         let radius = radius(&mut random, &lengths).min(24.0);
-        let reach = radius.ceil() + 10.0;
-        let side = 2 * reach as u32 + 72;
-        let grid = Grid::new([-reach, -reach], [side, side], 1.0).unwrap();
+        // Arcs lead far out of the square that their ends are in: only the bounds hold all of them.
+        let Some(bounds) = cast(directional(radius), &shapes).bounds() else {
+            continue;
+        };
+        let first = bounds.min.map(|v| v.floor() - 1.0);
+        let size = [0, 1].map(|axis: usize| (bounds.max[axis] - first[axis]).ceil() as u32 + 1);
+        let grid = Grid::new(first, size, 1.0).unwrap();
         let mut sum = |radius: f32, method| {
             let shadow = cast(directional(radius), &shapes);
             let drawn = densities(&shadow, &grid, &by(method), &mut scratch);

@@ -391,10 +391,10 @@ impl<'a> Part<'a> {
         let mut reader = serde_json::Deserializer::from_str(self.part);
         let value = serde_path_to_error::deserialize(&mut reader).map_err(|error| {
             let path = error.path().to_string();
-            let field = if path == "." {
-                field.to_owned()
-            } else {
-                format!("{field}.{path}")
+            // What was read of a field without a name as yet has a question mark for one.
+            let field = match path.trim_end_matches(['?', '.']) {
+                "" => field.to_owned(),
+                path => format!("{field}.{path}"),
             };
             self.json_error(error.inner(), field)
         })?;
@@ -415,12 +415,10 @@ impl<'a> Part<'a> {
         let message = error.to_string();
         let reason = message
             .rsplit_once(" at line ")
-            .map_or(message.as_str(), |(reason, _)| reason);
-        self.refuse_at(
-            offset,
-            field,
-            reason.replace("struct SurfaceFields", "an object"),
-        )
+            .map_or(message.as_str(), |(reason, _)| reason)
+            .replace("struct SurfaceFields", "an object")
+            .replace("EOF while parsing", "the text ends within");
+        self.refuse_at(offset, field, reason)
     }
 }
 

@@ -325,3 +325,16 @@ fn a_penumbra_too_narrow_for_its_coordinates_states_what_corners_lose() {
     assert!(!mesh.is_complete());
     assert!(worst <= mesh.error_levels(), "{worst}");
 }
+
+/// Cut into lines, its points miss the line by rounding errors: slivers of no area that a point could be in.
+#[test]
+fn a_curve_along_a_line_is_filled_with_nothing() {
+    let mut path = penumbral::Path::new();
+    path.move_to([14.0, 8.75]);
+    path.cubic_to([0.0, 0.0], [0.0, 0.0], [0.0, 0.0]).close();
+    let shape = Shape::path(&path, FillRule::NonZero).unwrap();
+    let light = Light::directional([0.0, 0.0], 0.0).unwrap();
+    let mesh = light.cast(&shape, 1.0, 0.0).unwrap().mesh(levels(4.0));
+    assert!(mesh.is_complete());
+    assert!(mass(&mesh).abs() < 1e-4, "{}", mass(&mesh));
+}

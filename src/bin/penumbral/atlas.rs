@@ -1,7 +1,6 @@
 //! `atlas`: where each method fails, and by how much: its error against the parameter that breaks it.
 
 mod families;
-mod tilt;
 
 use std::fs;
 use std::path::Path;

@@ -74,6 +74,17 @@ pub(crate) fn run(path: &Path) -> Result<(), Failure> {
                 candidate.error_levels
             );
         }
+        for mesh in candidates(&shadow, tolerance, Target::Triangles)
+            .into_iter()
+            .flatten()
+        {
+            let _ = writeln!(
+                text,
+                "  mesh      about {:.1} ms to build, within {:.2} levels",
+                mesh.cost_ns / 1e6,
+                mesh.error_levels
+            );
+        }
     }
     output::print(&text)
 }

@@ -9,6 +9,8 @@ mod explain;
 mod mesh;
 mod output;
 mod render;
+#[cfg(feature = "lab")]
+mod tilt;
 
 use std::fs::File;
 use std::io::Read;

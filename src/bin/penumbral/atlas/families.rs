@@ -8,6 +8,8 @@ use penumbral::lab::{
 };
 use penumbral::{FillRule, Grid, Light, Result, Shadow, Shape};
 
+use crate::tilt::{Method, Turned};
+
 type Techniques = Vec<Box<dyn Technique>>;
 
 /// A situation that is made worse by one number.
@@ -193,7 +195,7 @@ pub(super) fn all() -> Vec<Stress> {
             name: "tilt",
             parameter: "degrees, to and past the light's plane (56)",
             values: vec![1.0, 15.0, 30.0, 45.0, 52.0, 56.0, 60.0, 75.0, 85.0, 89.0],
-            trial: Trial::Own(super::tilt::measure),
+            trial: Trial::Own(turned),
         },
         Stress {
             name: "map resolution",
@@ -237,6 +239,22 @@ fn polygon(rings: &[Vec<[f64; 2]>]) -> Result<Shape> {
         .map(|ring| ring.iter().map(|point| point.map(|v| v as f32)).collect())
         .collect();
     Shape::polygon(&rings, FillRule::EvenOdd)
+}
+
+/// What is drawn of the card turned by so many degrees.
+fn turned(degrees: f64) -> Result<Vec<Own>> {
+    let card = Turned::by(degrees)?;
+    let mut densities = vec![0.0; card.pixels()];
+    let own = |method: Method| {
+        card.draw(method, &mut densities)?;
+        Ok(Own {
+            method: method.name(),
+            family: method.family(),
+            errors: card.errors(&densities),
+            promised_levels: method.promised_levels(),
+        })
+    };
+    Method::ALL.into_iter().map(own).collect()
 }
 
 /// A shape seen through `radius` pixels.

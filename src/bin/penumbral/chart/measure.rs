@@ -9,6 +9,7 @@ use penumbral::plan::Method;
 use penumbral::{Grid, Scratch, Shadow, Tolerance};
 use serde::{Deserialize, Serialize};
 
+use crate::tilt::{self, Turned};
 use crate::{Failure, output, read_scene};
 
 /// The shadows of a scene's ground, each on the pixels of its bounds.
@@ -194,26 +195,19 @@ fn measure(
         squares += errors.rms_levels * errors.rms_levels * part.exact.len() as f64;
         pixels += part.exact.len() as f64;
     }
-    let mut spent = start.elapsed();
-    let mut least = spent;
-    let mut times = 0;
-    while times < 3 && spent < Duration::from_secs(1) || spent < BUDGET {
-        let start = Instant::now();
+    let least = least_time(start.elapsed(), || {
         for part in &drawing.parts {
             draw(technique, part, &mut densities, scratch)?;
         }
         black_box(&densities);
-        let time = start.elapsed();
-        least = least.min(time);
-        spent += time;
-        times += 1;
-    }
+        Ok(())
+    })?;
     Ok(Row {
         method: technique.name().to_owned(),
         setting: lab::setting(technique),
         scene: drawing.name.clone(),
         radius: drawing.radius(),
-        ms_per_mp: least.as_secs_f64() * 1e3 / drawing.megapixels(),
+        ms_per_mp: least * 1e3 / drawing.megapixels(),
         max_levels: max,
         rms_levels: (squares / f64::max(pixels, 1.0)).sqrt(),
         family: Some(technique.family()),
@@ -222,6 +216,55 @@ fn measure(
             .iter()
             .any(|part| technique.refusal(&part.shadow, &part.grid).is_some()),
     })
+}
+
+/// The least of some drawings' times in seconds, where the first took so long.
+fn least_time(
+    first: Duration,
+    mut draw: impl FnMut() -> Result<(), Failure>,
+) -> Result<f64, Failure> {
+    let (mut spent, mut least, mut times) = (first, first, 0);
+    while times < 3 && spent < Duration::from_secs(1) || spent < BUDGET {
+        let start = Instant::now();
+        draw()?;
+        let time = start.elapsed();
+        least = least.min(time);
+        spent += time;
+        times += 1;
+    }
+    Ok(least.as_secs_f64())
+}
+
+/// The card that turns, by what can draw it: shadows without one penumbra radius are not for techniques.
+pub(crate) fn tilted(degrees: &[f64]) -> Result<Vec<Row>, Failure> {
+    let mut rows = Vec::new();
+    for degrees in degrees {
+        let card = Turned::by(*degrees).map_err(|error| error.to_string())?;
+        let mut densities = vec![0.0; card.pixels()];
+        for method in tilt::Method::ALL {
+            let mut draw = || {
+                let drawn = card.draw(method, &mut densities);
+                black_box(&densities);
+                drawn.map_err(|error| format!("{}: {error}", method.name()))
+            };
+            let start = Instant::now();
+            draw()?;
+            let least = least_time(start.elapsed(), draw)?;
+            let errors = card.errors(&densities);
+            rows.push(Row {
+                method: method.name().to_owned(),
+                setting: String::new(),
+                scene: format!("tilted-{degrees}"),
+                radius: card.radius,
+                ms_per_mp: least * 1e9 / card.pixels() as f64,
+                max_levels: errors.max_levels,
+                rms_levels: errors.rms_levels,
+                family: Some(method.family()),
+                refused: false,
+            });
+        }
+    }
+    Ok(rows)
 }
 
 pub(super) fn draw(

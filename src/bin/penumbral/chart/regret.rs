@@ -41,6 +41,7 @@ pub(crate) fn measure(drawings: &[Drawing], quick: bool) -> Result<Vec<Trial>, F
             // Shadows of one scene are much alike.
             for part in drawing.parts.iter().take(3) {
                 trials.extend(shadow(drawing, part, tolerance)?);
+                trials.extend(mesh(drawing, part, tolerance));
             }
             bar.inc(1);
         }
@@ -89,6 +90,32 @@ fn shadow(drawing: &Drawing, part: &Part, tolerance: Tolerance) -> Result<Vec<Tr
     Ok(trials)
 }
 
+/// What a mesh of a shadow costs: it is the only method for triangles, but is to be foretold like the others.
+fn mesh(drawing: &Drawing, part: &Part, tolerance: Tolerance) -> Option<Trial> {
+    let [candidate, ..] = plan::candidates(&part.shadow, tolerance, Target::Triangles);
+    let candidate = candidate?;
+    let (mut spent, mut least, mut max_levels) = (Duration::ZERO, Duration::MAX, 0.0);
+    while spent < TURN {
+        let begin = Instant::now();
+        let mesh = black_box(part.shadow.mesh(tolerance));
+        let time = begin.elapsed();
+        max_levels = mesh.error_levels();
+        (spent, least) = (spent + time, least.min(time));
+    }
+    Some(Trial {
+        scene: drawing.name.clone(),
+        pixels: part.exact.len(),
+        radius: part.shadow.radius() * part.grid.pixels_per_unit(),
+        levels: tolerance.as_levels(),
+        method: candidate.method,
+        promised_levels: candidate.error_levels,
+        expected_ns: candidate.cost_ns,
+        measured_ns: least.as_nanos() as f64,
+        max_levels,
+        chosen: true,
+    })
+}
+
 fn turn(
     technique: &dyn Technique,
     part: &Part,
@@ -132,6 +159,9 @@ pub(crate) fn csv(trials: &[Trial]) -> String {
 /// The median and the worst of the chosen method's time over the least of those that promise the tolerance and kept it. One
 /// that does not promise it may happen to keep it, which no plan can know: those shadows are counted.
 pub(crate) fn summary(trials: &[Trial]) -> String {
+    let (meshes, trials): (Vec<&Trial>, Vec<&Trial>) = trials
+        .iter()
+        .partition(|trial| trial.method == Method::Mesh);
     let mut regrets: Vec<(f64, String)> = Vec::new();
     let (mut broken, mut lucky) = (0, 0);
     for of_shadow in trials.chunk_by(|a, b| {
@@ -143,7 +173,7 @@ pub(crate) fn summary(trials: &[Trial]) -> String {
         broken += u32::from(chosen.max_levels > chosen.levels.max(0.12));
         let kept = || of_shadow.iter().filter(|t| t.max_levels <= t.levels);
         let is_lucky =
-            |t: &Trial| t.promised_levels > t.levels && t.measured_ns < chosen.measured_ns;
+            |t: &&Trial| t.promised_levels > t.levels && t.measured_ns < chosen.measured_ns;
         lucky += u32::from(kept().any(is_lucky));
         let kept = kept().filter(|trial| trial.promised_levels <= trial.levels);
         let Some(best) = kept.min_by(|a, b| a.measured_ns.total_cmp(&b.measured_ns)) else {
@@ -167,5 +197,20 @@ pub(crate) fn summary(trials: &[Trial]) -> String {
         middle.0,
         worst.0,
         worst.1
+    ) + &forecast(&meshes)
+}
+
+/// How far the meshes' times are from what the plan says of them.
+fn forecast(meshes: &[&Trial]) -> String {
+    let ratio = |trial: &&Trial| trial.measured_ns / trial.expected_ns;
+    let mut ratios: Vec<f64> = meshes.iter().map(ratio).collect();
+    ratios.sort_by(f64::total_cmp);
+    let (Some(least), Some(most)) = (ratios.first(), ratios.last()) else {
+        return String::new();
+    };
+    format!(
+        "{} meshes took {:.2} times what the plan said, median, and {least:.2} to {most:.2} times\n",
+        ratios.len(),
+        ratios[ratios.len() / 2]
     )
 }

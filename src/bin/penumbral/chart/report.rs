@@ -23,6 +23,7 @@ pub(crate) fn page(
     drawings: &[Drawing],
     techniques: &[Box<dyn Technique>],
     rows: &[Row],
+    beaten: &[String],
 ) -> Result<String, Failure> {
     let mut scenes = Vec::new();
     let shown = drawings.iter().filter(|drawing| {
@@ -53,7 +54,15 @@ pub(crate) fn page(
     let data = data.to_string().replace("</", "<\\/");
     Ok(include_str!("report.html")
         .replace("<!--charts-->", &tabs)
+        .replace("<!--beaten-->", &list(beaten))
         .replace("/*data*/", &data))
+}
+
+/// Lines as a list's items. Peers' names come from a file.
+fn list(lines: &[String]) -> String {
+    let safe = |line: &String| line.replace('&', "&amp;").replace('<', "&lt;");
+    let item = |line: &String| format!("<li>{}</li>\n", safe(line));
+    lines.iter().map(item).collect()
 }
 
 fn method(technique: &dyn Technique, part: &Part) -> Result<serde_json::Value, Failure> {
