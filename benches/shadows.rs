@@ -453,9 +453,7 @@ fn layers(c: &mut Criterion) {
         for count in [150, 300, 600] {
             let light = Light::new([1920.0, 0.0, 600.0], 800.0).unwrap();
             let tone = Tone::new(0.19, 0.0).unwrap();
-            let mut scene = Scene::new([3840.0, 2160.0], light.clone())
-                .unwrap()
-                .with_tone(tone);
+            let mut scene = Scene::new([3840.0, 2160.0], light).unwrap().with_tone(tone);
             for surface in many(count, piled) {
                 scene.push(surface).unwrap();
             }

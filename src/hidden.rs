@@ -222,7 +222,15 @@ impl Hidden {
         let size = [self.grid.width(), self.grid.height()];
         let spans = &mut self.spans;
         let push = |row, start, end| spans.push(Span { row, start, end });
-        if let Some(card) = Rounded::of_loop(&edges) {
+        let exact = match shape.cover {
+            Cover::Simple => shape.contours.iter().all(Contour::is_of_circles),
+            Cover::Rule(_) => shape.contours.iter().all(Contour::is_straight),
+        };
+        let card = Rounded::of_loop(&edges).filter(|card| {
+            let size = (card.max - card.min).max_element() * scale;
+            exact && size <= LARGEST_CARD
+        });
+        if let Some(card) = card {
             let card = Rounded {
                 min: card.min * scale - corner,
                 max: card.max * scale - corner,
@@ -230,10 +238,6 @@ impl Hidden {
             };
             card::find(&card, size, push);
         } else {
-            let exact = match shape.cover {
-                Cover::Simple => shape.contours.iter().all(Contour::is_of_circles),
-                Cover::Rule(_) => shape.contours.iter().all(Contour::is_straight),
-            };
             let margin = if exact { 0.0 } else { inside::FLATNESS };
             let placed = edges
                 .iter()
@@ -243,6 +247,10 @@ impl Hidden {
         scratch.give(edges);
     }
 }
+
+/// The largest rectangle, in pixels, that is told from one whose sides are not quite level: rectangles are found within 1e-9 of their
+/// size.
+const LARGEST_CARD: f64 = 1e5;
 
 /// How far lines in place of curves may move a pixel's coverage, in levels: by their balance of areas they are within
 /// [`inside::FLATNESS`] of curves of half a pixel's radius and more.

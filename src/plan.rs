@@ -24,7 +24,7 @@ pub enum Method {
     Direct,
     /// The closed form on a lattice coarser than the pixels, interpolated.
     Grid,
-    /// A rounded rectangle by columns and corners, these interpolated from a table.
+    /// A rounded rectangle or a circle, by the closed form in its sides.
     NinePatch,
     /// Triangles, interpolated; on pixels one sample at each centre.
     Mesh,

@@ -261,3 +261,22 @@ fn meshes_of_casters_that_touch_the_ground_say_so() {
     }
     assert!(wrong <= 8, "{wrong} pixels");
 }
+
+#[test]
+fn a_hard_shadow_of_a_tilted_caster_is_filled() {
+    let light = Light::new(LIGHT.map(|v| v as f32), 0.0).unwrap();
+    let pose = Pose::turned(40.0, [80.0, 80.0], [0.0, 1.0], 0.6).unwrap();
+    let shadow = light.cast_posed(&card(), &pose, 0.0).unwrap();
+    let mesh = shadow.mesh(Tolerance::ONE_LEVEL);
+    assert!(!mesh.is_complete());
+    let area: f64 = mesh
+        .triangles()
+        .map(|corners| {
+            let [a, b, c] = corners.map(|vertex| vertex.position.map(f64::from));
+            ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).abs() / 2.0
+        })
+        .sum();
+    let bounds = shadow.bounds().unwrap();
+    let [width, height] = [0, 1].map(|i| f64::from(bounds.max[i] - bounds.min[i]));
+    assert!(area > 0.8 * width * height && area < width * height);
+}

@@ -34,8 +34,8 @@ pub enum Overlap {
     SourceOver,
 }
 
-/// Casts whose shadows may overlap on pixels of which there are `per_unit` a scene unit, from the strongest to the weakest; alone if there is but one. What is drawn over the others
-/// whatever it hides is alone, too: an image's rays are stopped here and there.
+/// Casts whose shadows may overlap on pixels of which there are `per_unit` a scene unit, from the strongest to the weakest; alone
+/// if there is but one. What is drawn over the others whatever it hides is alone, too: an image's rays are stopped here and there.
 pub(super) fn groups(casts: &[Cast], overlap: Overlap, per_unit: f64) -> Vec<Vec<&Cast>> {
     let is_alone =
         |cast: &Cast| overlap == Overlap::SourceOver || matches!(cast.shadow, AnyShadow::Alpha(_));

@@ -27,7 +27,7 @@ impl Scene {
     /// ones are seen at the pixels' centres.
     ///
     /// # Errors
-    /// [`Error::NotInSvg`] for images and linear blending.
+    /// [`Error::NotInSvg`] for images, linear blending, and tilted casters that reach the light's plane.
     pub fn to_svg(&self, tolerance: Tolerance) -> Result<String> {
         let has = |is: fn(&Form) -> bool| self.surfaces().iter().any(|surface| is(surface.form()));
         let missing = [
@@ -140,14 +140,14 @@ impl Writer<'_> {
         let mut group = self.svg.part();
         group.draw(&format!("<g id=\"s{level}\">"));
         for (strength, casts) in &casts {
-            self.draw_casts(casts, f64::from(*strength), &mut group);
+            self.draw_casts(casts, f64::from(*strength), &mut group)?;
         }
         group.draw("</g>");
         self.svg.define_part(group);
         Ok(Some(level))
     }
 
-    fn draw_casts(&self, casts: &[Cast], strength: f64, svg: &mut Svg) {
+    fn draw_casts(&self, casts: &[Cast], strength: f64, svg: &mut Svg) -> Result<()> {
         svg.draw(&format!("<g opacity=\"{}\">", number(strength, 4)));
         for cast in casts {
             // What a faint shadow may be wrong by, the picture is wrong by less.
@@ -158,11 +158,17 @@ impl Writer<'_> {
                 // Refused before.
                 AnyShadow::Alpha(_) => continue,
             };
+            if mesh.indices().is_empty() && !mesh.is_complete() {
+                return Err(Error::NotInSvg {
+                    what: "a shadow without end",
+                });
+            }
             svg.draw("<g shape-rendering=\"crispEdges\">");
             svg.draw_mesh(&mesh, cast.weight(), self.scene.tone().color());
             svg.draw("</g>");
         }
         svg.draw("</g>");
+        Ok(())
     }
 
     /// Triangles give a pixel the density at its centre, where the picture has an average over a square: the shadow whose

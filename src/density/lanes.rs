@@ -5,7 +5,7 @@ use fearless_simd::{Simd, SimdBase, f32x16};
 /// Numbers that a kernel takes at once. It is the same on every machine, so that all round alike.
 pub(crate) const LANES: usize = 16;
 
-/// Each lane's own number. From a list, as compilers make calls of closures that tell them.
+/// Each lane's own number, in a list: `from_fn` with a closure is not always inlined.
 pub(crate) const NUMBERS: [f32; LANES] = {
     let mut numbers = [0.0; LANES];
     let mut lane = 0;

@@ -2,8 +2,8 @@
 //!
 //! What a chord of the disc covers of a rounded rectangle is closed form in the x of the two sides at its height. Those are
 //! found once for every strip of the rectangle, whatever the corners' radii; a pixel takes a few operations a chord. Columns
-//! between the corners have one density a row, rows between them are all alike. Where the penumbra is wide, rows are computed
-//! some pixels apart, with cubics between.
+//! between the corners have one density a row, rows between them are all alike. Where the penumbra is wide, rows and columns are
+//! computed some pixels apart, with cubics between.
 //!
 //! Error: that of the chords and of the cubics, kept within the tolerance by their number.
 
@@ -166,10 +166,14 @@ impl NinePatchScratch {
         let slope = STEEP * radius / (height * GROUP as f64);
         let steep = |corner: f64| {
             let depth = corner * (1.0 - slope / (1.0 + slope * slope).sqrt());
-            (depth / height) as i64 + GROUP + 2
+            (depth / height) as i64 + 2
         };
         let end = ((bottom - shape.min.y) / height) as i64;
-        let steep = [steep(tl.max(tr)), end - steep(bl.max(br))];
+        // The rectangle begins in the second group.
+        let steep = [
+            2 * GROUP + steep(tl.max(tr)),
+            end + GROUP - 1 - steep(bl.max(br)),
+        ];
         let count = end as usize + 2 * GROUP as usize + 2;
         let [singles, groups @ ..] = &mut self.strips;
         singles.set(simd, count, [0, 1], height as f32, &sides);
@@ -211,8 +215,11 @@ impl NinePatchScratch {
                 done.resize(width / BLOCK, false);
             }
             zone.values.resize(width, 0.0);
-            lattice.columns.resize(&mut self.columns, width);
         }
+        let widest = self.zones.iter().map(|zone| zone.values.len()).max();
+        lattice
+            .columns
+            .resize(&mut self.columns, widest.unwrap_or(0));
         if apart { 2 } else { 1 }
     }
 

@@ -1,6 +1,6 @@
 //! Meshes of casters that are not parallel to the light: the tangent construction with circles of many radii.
 
-use core::f64::consts::TAU;
+use core::f64::consts::{FRAC_2_PI, TAU};
 
 use glam::DVec2;
 use libm::{cos, sin};
@@ -8,11 +8,11 @@ use libm::{cos, sin};
 use super::profile::{Knot, Pieces};
 use super::refine::Refinement;
 use super::tangents::{ProjectionCircle, tangent_loops, tangent_normal};
-use super::{COARSEST_RING, MeshOptions, NARROWEST, RING_FLATNESS, SLACK, ShadowMesh};
+use super::{COARSEST_RING, MeshOptions, NARROWEST, RING_FLATNESS, SLACK, ShadowMesh, umbra};
 use crate::density::Field;
 use crate::error::MAX_COORDINATE;
 use crate::outline::{Winding, resolve_loops};
-use crate::path::arc_steps;
+use crate::path::{FillRule, arc_steps};
 use crate::tilted::{Circle, TiltedShadow};
 
 /// The smallest radius for which there are rings, over the largest one.
@@ -26,8 +26,9 @@ impl TiltedShadow {
     /// interpolated and outside of them, unless the mesh says that it is not [complete](ShadowMesh::is_complete).
     ///
     /// It is not complete where the caster touches the receiver, since the penumbra narrows there to nothing: what is wrong
-    /// is as small as `f32` allows. The shadow of a caster that reaches the light's plane has no end, and no mesh: it comes empty
-    /// and with an error of 255 levels.
+    /// is as small as `f32` allows; and not where the light is a point, or next to one: then it fills the hard shadow, and its error
+    /// is 255 levels. The shadow of a caster that reaches the light's plane has no end, and no mesh: it comes empty and with that
+    /// error too.
     ///
     /// ```
     /// use penumbral::{Light, Pose, Shape, Tolerance};
@@ -46,13 +47,13 @@ impl TiltedShadow {
             return ShadowMesh::empty();
         };
         let reach = min.abs().max(max.abs()).max_element();
-        let nothing = ShadowMesh {
+        let hard = |mesh| ShadowMesh {
             error_levels: 255.0,
             complete: false,
-            ..ShadowMesh::empty()
+            ..mesh
         };
         if reach >= MAX_COORDINATE {
-            return nothing;
+            return hard(ShadowMesh::empty());
         }
         // As for level casters: about a centre that `f32` holds.
         let center = min.midpoint(max).as_vec2().as_dvec2();
@@ -76,25 +77,37 @@ impl TiltedShadow {
         });
         let step = reach * f64::from(f32::EPSILON);
         if most < step * NARROWEST {
-            return nothing;
+            let centers = |circles: &Vec<ProjectionCircle>| {
+                circles.iter().map(|circle| circle.center).collect()
+            };
+            let loops: Vec<Vec<DVec2>> = circles.iter().map(centers).collect();
+            let loops = resolve_loops(&loops, Winding::Rule(FillRule::NonZero), false);
+            return hard(umbra::mesh(&loops, center));
         }
         let radius = least.max(most * SMALLEST);
         let levels = options.tolerance.as_levels();
         let share = (RING_FLATNESS * levels).min(COARSEST_RING);
         let facing = seen.facing([min - center, max - center]);
-        let rings = match facing.filter(|_| least == radius) {
+        let pieces = Pieces::within(levels / 255.0 * SLACK);
+        let count = circles.iter().map(Vec::len).sum::<usize>() * pieces.knots.len();
+        let has_rings = least == radius && 2 * count <= options.max_vertices;
+        let rings = match facing.filter(|_| has_rings) {
             Some(faces_up) => {
                 let circles: Vec<_> = circles
                     .into_iter()
-                    .map(|circles| if faces_up { circles } else { reversed(circles) })
+                    .map(|mut circles| {
+                        if !faces_up {
+                            circles.reverse();
+                        }
+                        circles
+                    })
                     .collect();
-                let pieces = Pieces::within(levels / 255.0 * SLACK);
                 let ring = |knot: &Knot| (*knot, tangent_loops(&circles, knot.t, radius * share));
                 pieces.knots.iter().map(ring).collect()
             }
             None => {
                 // Parts of the shadow see the caster from above, and others from below; or all rings meet where the caster
-                // touches its receiver: the outermost is all that is known of them.
+                // touches its receiver, or are too many: the outermost is all that is taken of them.
                 let knot = |t: f64| Knot {
                     t,
                     value: f64::from(u8::from(t > 0.0)),
@@ -105,8 +118,11 @@ impl TiltedShadow {
                 ]
             }
         };
-        let field = Field::of_tilted(seen.loops, least.max(most * SAMPLED));
-        Refinement::new(field, options, rings).run(center, step, 0.0)
+        let sampled = least.max(most * SAMPLED);
+        // Where the penumbra is narrower than samples go by, rounding counts for more.
+        let unsure = step * FRAC_2_PI * (1.0 / radius - 1.0 / sampled);
+        let field = Field::of_tilted(seen.loops, sampled);
+        Refinement::new(field, options, rings).run(center, step, unsure)
     }
 
     /// Whether all points of a box see the caster's loops turn left where y points up, or all of them right, or some so and others
@@ -170,9 +186,4 @@ fn projected(circle: &Circle) -> ProjectionCircle {
         center: circle.center / circle.scale,
         radius: circle.radius / circle.scale,
     }
-}
-
-fn reversed(mut circles: Vec<ProjectionCircle>) -> Vec<ProjectionCircle> {
-    circles.reverse();
-    circles
 }

@@ -390,7 +390,7 @@ impl Chords {
     }
 }
 
-/// The first node that is not above a height, by way of one that is near to it.
+/// The first node that is not below a height, by way of one that is near to it.
 fn first_from(nodes: &[Node], height: f64, near: usize) -> usize {
     let mut first = near;
     while first > 0 && nodes[first - 1].height >= height {

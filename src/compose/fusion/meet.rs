@@ -8,7 +8,7 @@ use glam::DVec2;
 
 use super::chords::{BLOCK, Chords, Occluder, block_of};
 use super::member::{Kind, Member};
-use super::pixel::{self, Pixels, REST, bit};
+use super::pixel::{Pixels, REST, Seen, bit};
 use crate::density::quadrature;
 
 /// What members hold back together where they hide these parts of the light one by one, and these are independent.
@@ -50,7 +50,7 @@ pub(super) struct Meet {
     shared: Vec<([usize; 2], [f32; BLOCK])>,
     hidden: Vec<f32>,
     /// Whose chords are known, and at what y.
-    placed: Option<(pixel::Company, f64)>,
+    placed: Option<(Seen, f64)>,
 }
 
 impl Default for Meet {
@@ -73,11 +73,11 @@ struct Company<'a> {
     /// Which of them hide a part of the disc, as far as is known; all others hide all of it.
     partial: Vec<usize>,
     /// As the pixels know them.
-    seen: pixel::Company,
+    seen: Seen,
 }
 
 impl<'a> Company<'a> {
-    fn of(seen: pixel::Company, members: &'a [Member]) -> Self {
+    fn of(seen: Seen, members: &'a [Member]) -> Self {
         let mut company = Self {
             members: Vec::new(),
             partial: Vec::new(),

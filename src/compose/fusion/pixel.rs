@@ -15,14 +15,13 @@ pub(super) struct Pixels {
     /// What the first two that hide a part of the disc hide.
     first: Vec<f32>,
     second: Vec<f32>,
-    company: Vec<Company>,
+    seen: Vec<Seen>,
 }
 
 /// The casts that hide a part of the disc as lower bits, those that hide all of it as upper ones. The last bit of both stands
 /// for all casts from there on.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-#[repr(transparent)]
-pub(super) struct Company(u32);
+pub(super) struct Seen(u32);
 
 /// Densities within this of 0 and 1 are these.
 const ROUNDING: f32 = 1e-6;
@@ -38,7 +37,7 @@ pub(super) fn bit(index: usize) -> u32 {
     1 << index.min(REST)
 }
 
-impl Company {
+impl Seen {
     /// The casts that hide a part of the disc, a bit each.
     pub(super) fn partial(self) -> u32 {
         self.0 & (bit(REST) * 2 - 1)
@@ -80,8 +79,8 @@ impl Pixels {
             list.clear();
             list.resize(count, 0.0);
         }
-        self.company.clear();
-        self.company.resize(count, Company::default());
+        self.seen.clear();
+        self.seen.resize(count, Seen::default());
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -108,21 +107,21 @@ impl Pixels {
         let met = self.met[at.clone()].iter_mut();
         let first = self.first[at.clone()].iter_mut();
         let second = self.second[at.clone()].iter_mut();
-        let company = self.company[at].iter_mut();
-        let pixels = held.zip(met).zip(first).zip(second).zip(company);
-        for (((((held, met), first), second), company), density) in pixels.zip(densities) {
+        let seen = self.seen[at].iter_mut();
+        let pixels = held.zip(met).zip(first).zip(second).zip(seen);
+        for (((((held, met), first), second), seen), density) in pixels.zip(densities) {
             let density = rounded(density);
             let hides = by.opacity * density * (1.0 - *met);
             *held += by.strength * hides;
             *met += hides;
             let is_partial = density > 0.0 && density < 1.0;
-            let partial = company.partial();
+            let partial = seen.partial();
             let is_first = is_partial && partial == 0;
             let is_second = is_partial && partial != 0 && partial & partial.wrapping_sub(1) == 0;
             *first = if is_first { density } else { *first };
             *second = if is_second { density } else { *second };
             let full = if density >= 1.0 { by.bit << FULL } else { 0 };
-            company.0 |= if is_partial { by.bit } else { full };
+            seen.0 |= if is_partial { by.bit } else { full };
         }
     }
 
@@ -136,14 +135,14 @@ impl Pixels {
         [self.first[pixel], self.second[pixel]]
     }
 
-    /// The next pixels of one company in which several casts hide a part of the disc.
-    pub(super) fn next_shared(&self, at: Range<usize>) -> Option<(Company, Range<usize>)> {
-        let companies = &self.company[at.clone()];
-        let start = companies.iter().position(|company| company.is_shared())?;
-        let company = companies[start];
-        let same = companies[start..].iter().take_while(|of| **of == company);
+    /// The next pixels that see the same casts, several of which hide a part of the disc.
+    pub(super) fn next_shared(&self, at: Range<usize>) -> Option<(Seen, Range<usize>)> {
+        let all = &self.seen[at.clone()];
+        let start = all.iter().position(|seen| seen.is_shared())?;
+        let seen = all[start];
+        let same = all[start..].iter().take_while(|other| **other == seen);
         let end = start + same.count();
-        Some((company, at.start + start..at.start + end))
+        Some((seen, at.start + start..at.start + end))
     }
 
     pub(super) fn mend(&mut self, pixel: usize, by: f32) {

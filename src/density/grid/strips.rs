@@ -7,10 +7,10 @@
 use fearless_simd::{Simd, SimdBase};
 use glam::DVec2;
 
-use crate::density::lanes::lanes;
+use crate::density::lanes::{LANES, lanes};
 
 /// Cells that are taken at once.
-pub(super) const BLOCK: usize = 16;
+pub(super) const BLOCK: usize = LANES;
 
 /// Cells that are marked together.
 pub(super) const QUAD: usize = 4;

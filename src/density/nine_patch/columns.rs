@@ -19,7 +19,7 @@ impl Columns {
     /// As far apart as can be, but no farther than `apart` pixels.
     pub(super) fn apart(apart: f64) -> Self {
         Self {
-            halvings: apart.max(1.0).log2() as u32,
+            halvings: (apart.max(1.0) as u64).ilog2(),
         }
     }
 

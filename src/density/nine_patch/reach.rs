@@ -150,9 +150,7 @@ impl Reach<'_> {
         depths: &[f32x16<S>; BLOCKS],
         sums: &mut [f32x16<S>; BLOCKS],
     ) {
-        let mut inside = [f32x16::splat(simd, 0.0); BLOCKS];
-        // What all columns have too much, added up in the same order: beyond the side nothing is left, exactly.
-        let mut outside = 0.0;
+        let zero = f32x16::splat(simd, 0.0);
         for (widths, strips, of) in self.runs() {
             let mut start = of.start.max(0);
             for (end, nodes) in strips.parts() {
@@ -165,21 +163,17 @@ impl Reach<'_> {
                 for node in nodes {
                     let (insets, covers) = strips.of(side, *node, start..end);
                     for ((half_width, inset), cover) in widths.iter().zip(insets).zip(covers) {
-                        let cover = cover * share;
-                        let (first, last) = (inset - half_width, inset + half_width);
-                        outside += first * cover;
-                        let first = f32x16::splat(simd, first);
-                        let last = f32x16::splat(simd, last);
+                        let offset = f32x16::splat(simd, half_width - inset);
+                        let width = f32x16::splat(simd, half_width + half_width);
+                        let cover = f32x16::splat(simd, cover * share);
                         for block in 0..BLOCKS {
-                            inside[block] += depths[block].max(first).min(last) * cover;
+                            let inside = (depths[block] + offset).max(zero).min(width);
+                            sums[block] += inside * cover;
                         }
                     }
                 }
                 start = end;
             }
-        }
-        for block in 0..BLOCKS {
-            sums[block] += inside[block] - outside;
         }
     }
 
