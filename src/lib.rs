@@ -93,6 +93,8 @@ mod compose;
 mod convert;
 mod density;
 mod error;
+#[cfg(feature = "finish")]
+pub mod finish;
 mod grid;
 mod hidden;
 mod image;
@@ -109,6 +111,7 @@ mod parallel;
 mod path;
 pub mod plan;
 mod pose;
+mod scan;
 mod scene;
 mod scratch;
 mod shadow;
