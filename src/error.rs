@@ -131,6 +131,10 @@ pub enum Error {
     /// A tilted surface or an image inside a clip.
     #[error("a tilted surface and an image are not clipped: put them outside of the clipped group")]
     NotClipped,
+    /// A finish on a tilted surface or an image.
+    #[cfg(feature = "finish")]
+    #[error("a tilted surface and an image take no finish: leave it out")]
+    NotFinished,
     /// A stroke that cannot be followed.
     #[error("the stroke cannot be drawn: {reason}")]
     Stroke {

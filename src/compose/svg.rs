@@ -26,7 +26,7 @@ impl Scene {
     /// Casters of several elevations are taken as independent of each other here.
     ///
     /// # Errors
-    /// [`Error::NotInSvg`] for tilted surfaces, images, coloured shadows and linear blending.
+    /// [`Error::NotInSvg`] for tilted surfaces, images, finishes, coloured shadows and linear blending.
     pub fn to_svg(&self, tolerance: Tolerance) -> Result<String> {
         let has = |is: fn(&Form) -> bool| self.surfaces().iter().any(|surface| is(surface.form()));
         let missing = [
@@ -35,6 +35,11 @@ impl Scene {
                 has(|form| matches!(form, Form::Posed(_))),
             ),
             ("an image", has(|form| matches!(form, Form::Image(..)))),
+            #[cfg(feature = "finish")]
+            (
+                "a finish",
+                self.surfaces().iter().any(|surface| surface.finish().is_some()),
+            ),
             (
                 "linear blending",
                 self.tone().blending() == Blending::Linear,

@@ -9,6 +9,9 @@ use crate::shape::Shape;
 /// How far lines may be from curves other than circles, scene units.
 const FLAT: f64 = 1e-3;
 
+/// How often the way to a ridge is halved: to a thousandth of it.
+const HALVINGS: u32 = 10;
+
 /// A rim as the surface over its outline's inside whose height is the profile's at the distance from the outline.
 #[derive(Debug, Clone)]
 pub struct RimSurface {
@@ -48,6 +51,27 @@ impl RimSurface {
     /// The distance from the outline over the rim's width.
     pub(super) fn depth(&self, point: DVec2) -> f64 {
         (self.foot(point) - point).length() / self.rim.width()
+    }
+
+    /// The point of the ridge above a point, at most `reach` away: as long as one goes away from one side the depth grows as fast,
+    /// and from the ridge on another side is nearer.
+    pub(super) fn ridge_near(&self, point: DVec2, reach: f64) -> DVec2 {
+        let foot = self.foot(point);
+        let (start, away) = (foot.distance(point), (point - foot).normalize_or_zero());
+        let is_below = |way: f64| {
+            let at = point + away * way;
+            self.foot(at).distance(at) > (start + way) * (1.0 - 1e-9)
+        };
+        let (mut low, mut high) = (0.0, reach);
+        for _ in 0..HALVINGS {
+            let middle = (low + high) / 2.0;
+            if is_below(middle) {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        point + away * low
     }
 
     /// The outline's nearest point.

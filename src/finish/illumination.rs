@@ -124,6 +124,9 @@ const SAMPLES: f64 = 4.0;
 /// More samples than this a lamp has not: highlights narrower than that are spread over the disc less evenly.
 const MOST_SAMPLES: f64 = 64.0;
 
+/// How many times as wide a highlight is across fibres.
+const WIDER: f64 = 5.0;
+
 impl Lighting {
     /// Lights, each with its strength among them, on a surface at an elevation (scene units) below them all.
     ///
@@ -162,23 +165,30 @@ impl Lighting {
         Intensity::new(self.intensity(point, normal))
     }
 
-    /// The same where fine fibres run along the unit tangent: the highlight is that of the fibres' own normals (Banks 1994).
-    pub(super) fn at_fibres(&self, point: [f64; 3], normal: [f64; 3], tangent: DVec3) -> Intensity {
-        let body = self.intensity(point, normal).0;
+    /// The same where fine fibres run along the unit tangent: across them the highlight is so many times as wide as along them
+    /// (Ashikhmin & Shirley 2000).
+    pub(super) fn at_fibres(&self, point: [f64; 3], normal: DVec3, tangent: DVec3) -> Intensity {
+        let body = self.intensity(point, normal.to_array()).0;
+        let across = normal.cross(tangent);
+        // The half vector turns by half of the reflected ray's angle: four times the exponent.
+        let along = 4.0 * self.material.shininess;
+        let of = |place: Place| {
+            let way = DVec3::from(self.ray(place, point).0);
+            if way.dot(normal) <= 0.0 {
+                return 0.0;
+            }
+            let half = (way + DVec3::Z).normalize_or_zero();
+            let (t, b) = (half.dot(tangent), half.dot(across));
+            let square = t * t + b * b;
+            if square == 0.0 {
+                return 1.0;
+            }
+            let exponent = along * (t * t + b * b / (WIDER * WIDER)) / square;
+            half.dot(normal).max(0.0).power(exponent)
+        };
         let mut gloss = 0.0;
         for lamp in &self.lamps {
             let strength = self.ray(lamp.center, point).1;
-            let of = |place: Place| {
-                let way = DVec3::from(self.ray(place, point).0);
-                if way.dot(DVec3::from(normal)) <= 0.0 {
-                    return 0.0;
-                }
-                let (along, seen) = (way.dot(tangent), tangent.z);
-                let across = sqrt((1.0 - along * along).max(0.0) * (1.0 - seen * seen).max(0.0));
-                (across - along * seen)
-                    .max(0.0)
-                    .power(self.material.shininess)
-            };
             let places = match lamp.samples.as_slice() {
                 [] => core::slice::from_ref(&lamp.center),
                 samples => samples,

@@ -32,6 +32,9 @@ const SHARP: f64 = PI / 9.0;
 /// How far from a sharp corner edges have a vertex of their own, in widths: beyond it the crease has no say.
 const GUARD: f64 = 1.5;
 
+/// Vertices on ridges change the triangles around: no more are level after so many rounds, but for slivers.
+const RIDGE_ROUNDS: usize = 4;
+
 /// A rim's mesh may not have more vertices than this.
 const MAX_VERTICES: usize = 1 << 18;
 
@@ -275,9 +278,23 @@ impl Builder {
         (across > 0.0).then(|| half / across)
     }
 
-    /// Where faces lie on one ring alone it has collapsed further in: their edges from side to side get a vertex in their
-    /// middle, as deep as it is.
+    /// Where faces lie on one ring alone it has collapsed further in: their edges from side to side get a vertex about
+    /// their middle, on the ridge and as deep as it is.
     fn push_ridges(&mut self, surface: &RimSurface) {
+        for _ in 0..RIDGE_ROUNDS {
+            let middles = self.level_middles();
+            if middles.is_empty() || self.triangles.num_vertices() + middles.len() > MAX_VERTICES {
+                break;
+            }
+            for (middle, reach) in middles {
+                let ridge = surface.ridge_near(middle, reach);
+                self.insert(ridge, surface.depth(ridge).min(1.0), None);
+            }
+        }
+    }
+
+    /// The middles and half lengths of the edges from side to side of faces that lie on one ring.
+    fn level_middles(&self) -> Vec<(DVec2, f64)> {
         let mut middles = Vec::new();
         for face in faces(&self.triangles, self.last, Region::Penumbra) {
             let face = self.triangles.face(face);
@@ -286,18 +303,20 @@ impl Builder {
                 continue;
             }
             for edge in face.adjacent_edges() {
-                let [a, b] = edge.positions().map(|p| DVec2::new(p.x, p.y));
                 if !edge.is_constraint_edge() {
-                    // From either side it is the same point.
-                    middles.push((a + b) / 2.0);
+                    let [a, b] = edge.positions().map(|p| DVec2::new(p.x, p.y));
+                    middles.push(((a + b) / 2.0, a.distance(b) / 2.0));
                 }
             }
         }
-        middles.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+        // From either side an edge has the same middle.
+        let key = |&(at, _): &(DVec2, f64)| (at.x, at.y);
+        middles.sort_by(|a, b| {
+            let (a, b) = (key(a), key(b));
+            a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
+        });
         middles.dedup();
-        for middle in middles {
-            self.insert(middle, surface.depth(middle).min(1.0), None);
-        }
+        middles
     }
 
     fn finish(self, rim: &Rim, center: DVec2) -> RimMesh {

@@ -80,21 +80,32 @@ pub struct Canvas<P = Intensity> {
 }
 
 /// From which column on runs are followed at least: one that begins left of what is drawn gets the same bits on any part of the
-/// picture. It is as far left as the canvas of a picture reaches.
-const FIRST_COLUMN: i64 = -2;
+/// picture. No canvas of a picture reaches farther left.
+const FIRST_COLUMN: i64 = -16;
 
 impl<P: Clone> Canvas<P> {
-    /// A canvas of a grid's pixels, row by row, none of them shaded.
+    /// A canvas of a grid's pixels, none of them shaded.
     #[must_use]
     pub fn new(grid: &Grid) -> Self {
-        let first = grid.corner().floor();
-        let side = |first: f64, count: u32| first as i64..first as i64 + i64::from(count);
+        Self::within(grid, 1, 0)
+    }
+
+    /// A canvas of so many pixels along each of a grid's, and a margin of some of the grid's on every side.
+    pub(super) fn within(grid: &Grid, finer: u32, margin: u32) -> Self {
+        let whole = grid.corner().floor();
+        let (finer, margin) = (i64::from(finer), i64::from(margin));
+        let side = |first: f64, count: u32| {
+            let first = first as i64;
+            finer * (first - margin)..finer * (first + i64::from(count) + margin)
+        };
+        let (columns, rows) = (side(whole.x, grid.width()), side(whole.y, grid.height()));
+        let count = (columns.end - columns.start) * (rows.end - rows.start);
         Self {
-            columns: side(first.x, grid.width()),
-            rows: side(first.y, grid.height()),
-            corner: grid.corner() - first,
-            pixels_per_unit: grid.pixels_per_unit(),
-            pixels: vec![None; grid.width() as usize * grid.height() as usize],
+            columns,
+            rows,
+            corner: (grid.corner() - whole) * finer as f64,
+            pixels_per_unit: grid.pixels_per_unit() * finer as f64,
+            pixels: vec![None; count as usize],
         }
     }
 
