@@ -37,6 +37,7 @@ pub type Result<T, E = Error> = core::result::Result<T, E>;
 /// | [`NotFlat`](Error::NotFlat) | [`Pose::of_corners`](crate::Pose::of_corners) with the elevations 5, 9, 14, 11 |
 /// | [`NotOpaque`](Error::NotOpaque) | a scene's background `#fafafa80` |
 /// | [`NotInSvg`](Error::NotInSvg) | `Scene::to_svg` of a scene with linear blending |
+/// | `NotFinished` (feature `finish`) | a tilted surface with a finish |
 /// | [`NotClipped`](Error::NotClipped) | `Surface::clipped` of a tilted surface |
 /// | [`Stroke`](Error::Stroke) | a stroke of more vertices than a `u32` counts |
 /// | [`Scene`](Error::Scene) | a scene file that ends early, has an unknown field or any of the above |

@@ -266,7 +266,10 @@ impl Renderer {
         progress(1, layers)?;
         for (index, &surface) in stage.order.iter().enumerate() {
             let layer = layer(scene, surface, index as u32 + 1, window)?;
-            #[cfg_attr(not(feature = "finish"), expect(unused_mut, reason = "a finish is found late"))]
+            #[cfg_attr(
+                not(feature = "finish"),
+                expect(unused_mut, reason = "a finish is found late")
+            )]
             if let Some(mut layer) = layer.filter(|layer| self.is_visible(layer, window)) {
                 self.find_cover(surface, &layer);
                 #[cfg(feature = "finish")]

@@ -38,7 +38,9 @@ impl Scene {
             #[cfg(feature = "finish")]
             (
                 "a finish",
-                self.surfaces().iter().any(|surface| surface.finish().is_some()),
+                self.surfaces()
+                    .iter()
+                    .any(|surface| surface.finish().is_some()),
             ),
             (
                 "linear blending",

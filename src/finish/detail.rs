@@ -108,9 +108,7 @@ impl Detail {
         let normal = (-slope).extend(1.0).normalize();
         let point = middle.extend(0.0).to_array();
         let intensity = match &self.frame {
-            Some(frame) => {
-                lighting.at_fibres(point, normal, frame.tangent(normal, middle, side))
-            }
+            Some(frame) => lighting.at_fibres(point, normal, frame.tangent(normal, middle, side)),
             None => lighting.at(point, normal.to_array()),
         };
         let lit = lit(fill, intensity);

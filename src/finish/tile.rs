@@ -93,7 +93,10 @@ impl Tile {
     /// The same of one copy.
     fn within(&self, x: f64, y: f64) -> DVec4 {
         let [width, height] = self.image.size().map(f64::from);
-        let (left, top) = (floor(x).clamp(0.0, width - 1.0), floor(y).clamp(0.0, height - 1.0));
+        let (left, top) = (
+            floor(x).clamp(0.0, width - 1.0),
+            floor(y).clamp(0.0, height - 1.0),
+        );
         let stride = width as usize + 1;
         let first = top as usize * stride + left as usize;
         let [a, b, c, d] = [first, first + 1, first + stride, first + stride + 1]
@@ -127,8 +130,7 @@ mod tests {
             for row in 0..count {
                 for column in 0..count {
                     let at = middle
-                        + size
-                            * (DVec2::new(f64::from(column), f64::from(row)) + 0.5)
+                        + size * (DVec2::new(f64::from(column), f64::from(row)) + 0.5)
                             / f64::from(count)
                         - size / 2.0;
                     let texel = |v: f64, side: f64, number: f64| {

@@ -146,7 +146,10 @@ impl Surface {
         }
         let shape = self.shape.clipped(clip)?;
         Ok(shape.map(|shape| {
-            #[cfg_attr(not(feature = "finish"), expect(unused_mut, reason = "a finish keeps the whole"))]
+            #[cfg_attr(
+                not(feature = "finish"),
+                expect(unused_mut, reason = "a finish keeps the whole")
+            )]
             let mut part = Self {
                 shape,
                 ..self.clone()

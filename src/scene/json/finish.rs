@@ -6,9 +6,7 @@ use serde::Deserialize;
 
 use super::surface::{Outcome, text};
 use super::{Images, some};
-use crate::finish::{
-    Bump, Environment, Finish, Frame, Material, Profile, Rim, ShadingModel, Tile,
-};
+use crate::finish::{Bump, Environment, Finish, Frame, Material, Profile, Rim, ShadingModel, Tile};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -98,9 +96,8 @@ impl FinishFields {
         if let Some(material) = self.material {
             finish = finish.with_material(material.build()?);
         }
-        let mut tile = |name: &str, size: [f32; 2]| {
-            Tile::new(Arc::new(images(name)?), size).map_err(text)
-        };
+        let mut tile =
+            |name: &str, size: [f32; 2]| Tile::new(Arc::new(images(name)?), size).map_err(text);
         if let Some(of) = self.texture {
             finish = finish.with_texture(tile(&of.image, of.tile)?);
         }
@@ -128,7 +125,10 @@ fn shading(name: &str) -> Outcome<ShadingModel> {
         .find(|model| model.shading().name() == name)
         .ok_or_else(|| {
             let names = all.map(|model| model.shading().name());
-            format!("finish.shading {name:?} is unknown: give {}", names.join(", "))
+            format!(
+                "finish.shading {name:?} is unknown: give {}",
+                names.join(", ")
+            )
         })
 }
 
