@@ -68,6 +68,8 @@
 //! | `parallel.rs` | bands of rows on several threads |
 //! | `scratch.rs`, `error.rs`, `limits.rs` | [`Scratch`], [`Error`], [`Limits`] |
 //! | `lab.rs`, `lab/` | `lab`: other ways to draw a shadow, to be measured against, one a file |
+//! | `finish.rs`, `finish/` | `finish`: rims and their shading, a model a file; detail on what is flat |
+//! | `scan.rs` | the pixels of a triangle, row by row |
 //! | `bin/penumbral` | the command line |
 //!
 //! # Features
@@ -80,6 +82,7 @@
 //! | `cli` | the command line `penumbral` | clap, image, indicatif, `raster`, `scene` |
 //! | `lyon`, `kurbo` | paths from these crates, meshes into lyon's buffers | kurbo |
 //! | `lab` | `lab`: the laboratory, and the commands `chart` and `atlas`; no toolkit needs it | |
+//! | `finish` | `finish`: rims that catch the light, with `raster` in pictures, with `scene` in scenes; nothing is computed where no surface has one | |
 //! | `rayon` | [`Shadow::blend_rgba8_in_bands`](crate::Shadow): drawing on several threads | rayon |
 //!
 //! # Stability guarantees
@@ -93,6 +96,8 @@ mod compose;
 mod convert;
 mod density;
 mod error;
+#[cfg(feature = "finish")]
+pub mod finish;
 mod grid;
 mod hidden;
 mod image;
@@ -109,6 +114,7 @@ mod parallel;
 mod path;
 pub mod plan;
 mod pose;
+mod scan;
 mod scene;
 mod scratch;
 mod shadow;

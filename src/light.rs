@@ -2,6 +2,8 @@
 
 use core::borrow::Borrow;
 
+#[cfg(feature = "finish")]
+use glam::DVec4;
 use glam::{DAffine2, DMat2, DVec2};
 
 use crate::error::{self, Error, MAX_COORDINATE, Result};
@@ -216,6 +218,18 @@ impl Light {
     /// As [`Light::cast`].
     pub fn scale(&self, elevation: f32, receiver: f32) -> Result<f64> {
         Ok(self.projection(elevation, receiver)?.scale)
+    }
+
+    /// A point of the disc, `at` its centre plus so many radii, over a plane at an elevation: homogeneous, so that a light at
+    /// infinity is a direction, with 0 for w.
+    #[cfg(feature = "finish")]
+    pub(crate) fn point(&self, at: DVec2, elevation: f64) -> DVec4 {
+        match self.kind {
+            Kind::Disc { center, z, radius } => {
+                (center + at * radius).extend(z - elevation).extend(1.0)
+            }
+            Kind::Directional { offset, spread } => (at * spread - offset).extend(1.0).extend(0.0),
+        }
     }
 
     pub(crate) fn projection(&self, elevation: f32, receiver: f32) -> Result<Projection> {

@@ -14,12 +14,12 @@ mod export;
 mod gouraud;
 mod profile;
 mod refine;
-mod regions;
+pub(crate) mod regions;
 mod samples;
 mod settle;
 mod sink;
 pub(crate) mod strips;
-mod tangents;
+pub(crate) mod tangents;
 mod tilted;
 mod umbra;
 

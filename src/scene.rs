@@ -119,9 +119,13 @@ impl Scene {
     ///
     /// # Errors
     /// An elevation below 0 or not below a light, an opacity not from 0 to 1, a caster so near a light that its shadow
-    /// passes [`MAX_COORDINATE`](crate::MAX_COORDINATE).
+    /// passes [`MAX_COORDINATE`](crate::MAX_COORDINATE), a finish on a tilted surface or an image.
     pub fn push(&mut self, surface: Surface) -> Result<()> {
         error::within("opacity", f64::from(surface.opacity()), 0.0, 1.0)?;
+        #[cfg(feature = "finish")]
+        if surface.finish().is_some() && !matches!(surface.form(), Form::Level) {
+            return Err(Error::NotFinished);
+        }
         for (light, _) in self.lights() {
             check(&light, &surface)?;
         }

@@ -14,6 +14,8 @@ use super::fusion::{self, groups};
 use super::{Receiver, Stage};
 use crate::density::{self, Each, PixelOptions};
 use crate::error::{Error, Result};
+#[cfg(feature = "finish")]
+use crate::finish::Finished;
 use crate::grid::Grid;
 use crate::hidden::Hidden;
 use crate::limits::Limits;
@@ -52,6 +54,8 @@ struct Layer {
 enum Fill {
     Color(Color),
     Texture(Texture),
+    #[cfg(feature = "finish")]
+    Finish(Vec<[u8; 3]>),
 }
 
 /// The pixels that are drawn: some columns and rows of the picture's.
@@ -81,6 +85,9 @@ struct Job<'a> {
     stage: Stage<'a>,
     grid: Grid,
     mixer: Mixer,
+    /// The surfaces' finishes in the order that they are drawn.
+    #[cfg(feature = "finish")]
+    finishes: Vec<Option<Finished<'a>>>,
 }
 
 impl Renderer {
@@ -221,9 +228,12 @@ impl Renderer {
                 needed: grid.width() as usize * grid.height() as usize,
             });
         }
+        let stage = Stage::new(scene)?;
         Ok(Job {
             scene,
-            stage: Stage::new(scene)?,
+            #[cfg(feature = "finish")]
+            finishes: finishes(scene, &stage)?,
+            stage,
             grid,
             mixer: Mixer::new(&scene.tone()),
         })
@@ -256,8 +266,16 @@ impl Renderer {
         progress(1, layers)?;
         for (index, &surface) in stage.order.iter().enumerate() {
             let layer = layer(scene, surface, index as u32 + 1, window)?;
-            if let Some(layer) = layer.filter(|layer| self.is_visible(layer, window)) {
+            #[cfg_attr(
+                not(feature = "finish"),
+                expect(unused_mut, reason = "a finish is found late")
+            )]
+            if let Some(mut layer) = layer.filter(|layer| self.is_visible(layer, window)) {
                 self.find_cover(surface, &layer);
+                #[cfg(feature = "finish")]
+                if let Some(finished) = &job.finishes[index] {
+                    layer.fill = Fill::Finish(finished.colors(&layer.grid, &self.cover));
+                }
                 self.draw_layer(job, &layer, window, pixmap)?;
             }
             progress(index + 2, layers)?;
@@ -354,6 +372,8 @@ impl Renderer {
                         alpha *= opacity;
                         color
                     }
+                    #[cfg(feature = "finish")]
+                    Fill::Finish(colors) => colors[index],
                 };
                 let pixel = &mut pixels[start + column];
                 let below = [pixel.red(), pixel.green(), pixel.blue()];
@@ -403,6 +423,20 @@ impl Renderer {
         });
         hidden
     }
+}
+
+#[cfg(feature = "finish")]
+fn finishes<'a>(scene: &'a Scene, stage: &Stage<'a>) -> Result<Vec<Option<Finished<'a>>>> {
+    let finished = stage.order.iter().map(|&surface| {
+        let finish = surface.finish().filter(|_| surface.weight() > 0.0);
+        let Color { r, g, b, .. } = surface.fill();
+        let on = |finish| {
+            let (shape, elevation) = (surface.rimmed(), surface.elevation());
+            Finished::new(finish, shape, elevation, [r, g, b], scene.lights())
+        };
+        finish.map(on).transpose()
+    });
+    finished.collect()
 }
 
 fn layer(scene: &Scene, surface: &Surface, rank: u32, window: &Window) -> Result<Option<Layer>> {

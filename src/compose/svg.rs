@@ -27,11 +27,18 @@ impl Scene {
     /// ones are seen at the pixels' centres.
     ///
     /// # Errors
-    /// [`Error::NotInSvg`] for images, linear blending, and tilted casters that reach the light's plane.
+    /// [`Error::NotInSvg`] for images, finishes, linear blending, and tilted casters that reach the light's plane.
     pub fn to_svg(&self, tolerance: Tolerance) -> Result<String> {
         let has = |is: fn(&Form) -> bool| self.surfaces().iter().any(|surface| is(surface.form()));
         let missing = [
             ("an image", has(|form| matches!(form, Form::Image(..)))),
+            #[cfg(feature = "finish")]
+            (
+                "a finish",
+                self.surfaces()
+                    .iter()
+                    .any(|surface| surface.finish().is_some()),
+            ),
             (
                 "linear blending",
                 self.tone().blending() == Blending::Linear,

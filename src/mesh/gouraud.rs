@@ -8,55 +8,7 @@ use crate::density::{Each, Sink, clear};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::hidden::Hidden;
-
-/// A corner in pixels of the grid.
-#[derive(Debug, Clone, Copy)]
-struct Corner {
-    at: DVec2,
-    density: f64,
-}
-
-/// An edge from its upper to its lower end. Both triangles at an edge build it from the same two corners, so they find the
-/// same place for it on every scan line.
-#[derive(Debug, Clone, Copy)]
-struct Side {
-    top: Corner,
-    /// Changes of x and density from one scan line to the next.
-    slope: f64,
-    density_slope: f64,
-    bottom: f64,
-}
-
-impl Side {
-    fn between(a: Corner, b: Corner) -> Self {
-        let (top, bottom) = if (a.at.y, a.at.x) <= (b.at.y, b.at.x) {
-            (a, b)
-        } else {
-            (b, a)
-        };
-        let height = bottom.at.y - top.at.y;
-        let per_line = if height > 0.0 { 1.0 / height } else { 0.0 };
-        Self {
-            top,
-            slope: (bottom.at.x - top.at.x) * per_line,
-            density_slope: (bottom.density - top.density) * per_line,
-            bottom: bottom.at.y,
-        }
-    }
-
-    fn spans(&self, y: f64) -> bool {
-        self.top.at.y <= y && y < self.bottom
-    }
-
-    /// x and density on the scan line at `y`.
-    fn at(&self, y: f64) -> (f64, f64) {
-        let down = y - self.top.at.y;
-        (
-            self.top.at.x + self.slope * down,
-            self.top.density + self.density_slope * down,
-        )
-    }
-}
+use crate::scan::{Corner, scan_convert};
 
 impl ShadowMesh {
     /// Draws the mesh on a grid: `densities` gets the interpolated density of each pixel's centre, 0 outside of the mesh.
@@ -82,67 +34,32 @@ impl ShadowMesh {
             }
         };
         for triangle in self.triangles() {
-            scan_convert(triangle, grid, &mut put);
+            draw(triangle, grid, &mut put);
         }
     }
 }
 
-fn scan_convert(triangle: [MeshVertex; 3], grid: &Grid, put: &mut impl FnMut(u32, u32, f32)) {
-    let [a, b, c] = triangle.map(|vertex| {
+fn draw(triangle: [MeshVertex; 3], grid: &Grid, put: &mut impl FnMut(u32, u32, f32)) {
+    let corners = triangle.map(|vertex| {
         let position = DVec2::new(f64::from(vertex.position[0]), f64::from(vertex.position[1]));
         Corner {
             at: position * grid.pixels_per_unit() - grid.corner(),
-            density: f64::from(vertex.density),
+            value: f64::from(vertex.density),
         }
     });
-    let sides = [
-        Side::between(a, b),
-        Side::between(b, c),
-        Side::between(c, a),
-    ];
-    let top = sides
-        .iter()
-        .map(|side| side.top.at.y)
-        .fold(f64::MAX, f64::min);
-    let bottom = sides
-        .iter()
-        .map(|side| side.bottom)
-        .fold(f64::MIN, f64::max);
-    for row in centers(top, bottom, grid.height()) {
-        let y = f64::from(row) + 0.5;
-        let mut crossed = sides
-            .iter()
-            .filter(|side| side.spans(y))
-            .map(|side| side.at(y));
-        let (Some(first), Some(second)) = (crossed.next(), crossed.next()) else {
-            continue;
-        };
-        let (left, right) = if first.0 <= second.0 {
-            (first, second)
-        } else {
-            (second, first)
-        };
-        let width = right.0 - left.0;
-        if width <= 0.0 {
-            continue;
+    let (columns, rows) = (0..i64::from(grid.width()), 0..i64::from(grid.height()));
+    scan_convert(corners, &columns, &rows, |run| {
+        let mut density = run.first;
+        for column in run.columns {
+            // Steps add up to some 1e-16 beyond either end.
+            put(
+                column as u32,
+                run.row as u32,
+                density.clamp(0.0, 1.0) as f32,
+            );
+            density += run.step;
         }
-        let step = (right.1 - left.1) / width;
-        let columns = centers(left.0, right.0, grid.width());
-        let mut density = left.1 + step * (f64::from(columns.start) + 0.5 - left.0);
-        for column in columns {
-            {
-                // Steps add up to some 1e-16 beyond either end.
-                put(column, row, density.clamp(0.0, 1.0) as f32);
-            }
-            density += step;
-        }
-    }
-}
-
-/// The indices of the pixels whose centres are at or after `from` and before `to`, of `count` in a row.
-fn centers(from: f64, to: f64, count: u32) -> core::ops::Range<u32> {
-    let index = |v: f64| (v - 0.5).ceil().clamp(0.0, f64::from(count)) as u32;
-    index(from)..index(to)
+    });
 }
 
 #[cfg(test)]

@@ -4,15 +4,15 @@ use spade::handles::{FixedFaceHandle, InnerTag};
 use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
 
 /// The triangulation between the rings: their edges are its constraints.
-pub(super) type Triangles = ConstrainedDelaunayTriangulation<Vertex>;
-pub(super) type Face = FixedFaceHandle<InnerTag>;
+pub(crate) type Triangles = ConstrainedDelaunayTriangulation<Vertex>;
+pub(crate) type Face = FixedFaceHandle<InnerTag>;
 
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Vertex {
-    pub(super) position: Point2<f64>,
-    pub(super) density: f64,
+pub(crate) struct Vertex {
+    pub(crate) position: Point2<f64>,
+    pub(crate) density: f64,
     /// The ring it was made for: 0 is the outer edge.
-    pub(super) ring: Option<usize>,
+    pub(crate) ring: Option<usize>,
 }
 
 impl HasPosition for Vertex {
@@ -25,7 +25,7 @@ impl HasPosition for Vertex {
 
 /// On which side of the penumbra's two edges a face lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Region {
+pub(crate) enum Region {
     Outside,
     Penumbra,
     Umbra,
@@ -33,7 +33,7 @@ pub(super) enum Region {
 
 /// The faces of a region, found by walking in from outside and minding the penumbra's two edges, the
 /// rings 0 and `last`.
-pub(super) fn faces(triangles: &Triangles, last: usize, wanted: Region) -> Vec<Face> {
+pub(crate) fn faces(triangles: &Triangles, last: usize, wanted: Region) -> Vec<Face> {
     let mut regions: Vec<Option<Region>> = vec![None; triangles.num_all_faces()];
     let mut open = vec![triangles.outer_face().fix()];
     regions[open[0].index()] = Some(Region::Outside);

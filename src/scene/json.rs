@@ -1,5 +1,7 @@
 //! Reading the JSON scene format.
 
+#[cfg(feature = "finish")]
+mod finish;
 mod surface;
 
 use serde::{Deserialize, Deserializer};
@@ -145,6 +147,18 @@ impl Scene {
     /// A light may be directional: `offset` [x, y] and `spread` in place of `x`, `y`, `z` and `radius`
     /// ([`Light::directional`]). `lights` is a list of further lights, each with its own `key`. Of the tone there are
     /// `shadow_color` and `blending`, `srgb` (the default) or `linear`. `overlap` is `union` (the default) or `source-over`.
+    ///
+    /// With the feature `finish` a surface may have a `finish` of any of
+    ///
+    /// | field | fields of its own |
+    /// |---|---|
+    /// | `rim` | `width`, `height`, `profile` (`quarter-round`, the default, `bevel`, `cosine`), `steps` |
+    /// | `shading` | a name: `curvature` (the default), `flat`, `gouraud`, `phong`, `fast-phong` |
+    /// | `material` | `ambient`, `diffuse`, `specular`, `shininess`, `attenuation` [a0, a1, a2] |
+    /// | `texture` | `image` and `tile`, the width and height of each of its copies, from the scene's origin on |
+    /// | `bump` | `image`, `tile`, `depth` |
+    /// | `frame` | `image`, `tile`, `depth`, `degrees`, `twist` (degrees) |
+    /// | `environment` | `image`, `tile`, `height`, `strength` |
     ///
     /// Unknown fields, and fields of another shape, are refused.
     ///

@@ -5,6 +5,8 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 
 use crate::error::{Error, Result};
+#[cfg(feature = "finish")]
+use crate::finish::Finish;
 use crate::image::{Image, Place};
 use crate::light::Projection;
 use crate::pose::Pose;
@@ -21,6 +23,17 @@ pub struct Surface {
     opacity: f32,
     fill: Color,
     name: Option<String>,
+    #[cfg(feature = "finish")]
+    look: Option<Look>,
+}
+
+/// A surface's finish.
+#[cfg(feature = "finish")]
+#[derive(Debug, Clone, PartialEq)]
+struct Look {
+    finish: Arc<Finish>,
+    /// What the rim goes round, where not all of it is left.
+    whole: Option<Shape>,
 }
 
 /// How a surface lies, and what it is made of.
@@ -45,6 +58,8 @@ impl Surface {
             opacity: 1.0,
             fill: Color::WHITE,
             name: None,
+            #[cfg(feature = "finish")]
+            look: None,
         }
     }
 
@@ -96,6 +111,31 @@ impl Surface {
         self
     }
 
+    /// The same with a finish. Where a clip cuts the surface there is no rim.
+    #[cfg(feature = "finish")]
+    #[must_use]
+    pub fn with_finish(mut self, finish: Finish) -> Self {
+        self.look = Some(Look {
+            finish: Arc::new(finish),
+            whole: None,
+        });
+        self
+    }
+
+    /// The finish, if it has one.
+    #[cfg(feature = "finish")]
+    #[must_use]
+    pub fn finish(&self) -> Option<&Finish> {
+        self.look.as_ref().map(|look| look.finish.as_ref())
+    }
+
+    /// What a rim goes round: the shape before it was clipped.
+    #[cfg(all(feature = "finish", feature = "raster"))]
+    pub(crate) fn rimmed(&self) -> &Shape {
+        let whole = self.look.as_ref().and_then(|look| look.whole.as_ref());
+        whole.unwrap_or(&self.shape)
+    }
+
     /// The part of the surface inside a clip, or none: it casts what it shows.
     ///
     /// # Errors
@@ -105,9 +145,20 @@ impl Surface {
             return Err(Error::NotClipped);
         }
         let shape = self.shape.clipped(clip)?;
-        Ok(shape.map(|shape| Self {
-            shape,
-            ..self.clone()
+        Ok(shape.map(|shape| {
+            #[cfg_attr(
+                not(feature = "finish"),
+                expect(unused_mut, reason = "a finish keeps the whole")
+            )]
+            let mut part = Self {
+                shape,
+                ..self.clone()
+            };
+            #[cfg(feature = "finish")]
+            if let Some(look) = &mut part.look {
+                look.whole.get_or_insert_with(|| self.shape.clone());
+            }
+            part
         }))
     }
 

@@ -5,6 +5,8 @@ mod picture;
 pub(crate) mod plot;
 mod regret;
 mod report;
+#[cfg(feature = "finish")]
+mod shading;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -74,6 +76,12 @@ pub(crate) fn run(options: &Options<'_>) -> Result<(), Failure> {
     )];
     for family in Family::ALL {
         pictures.push((format!("chart-{family}"), Picture::of_family(family, &rows)));
+    }
+    #[cfg(feature = "finish")]
+    {
+        let rows = shading::rows()?;
+        output::write(&file("shading.csv"), measure::csv(&rows).as_bytes())?;
+        pictures.push(("chart-shading".to_owned(), shading::picture(&rows)));
     }
     let mut drawn = Vec::new();
     for (name, picture) in &pictures {

@@ -4,6 +4,8 @@ use std::sync::Arc;
 
 use serde::Deserialize;
 
+#[cfg(feature = "finish")]
+use super::finish::FinishFields;
 use super::{Images, some};
 use crate::error::Error;
 use crate::path::{FillRule, Path};
@@ -12,9 +14,9 @@ use crate::scene::Surface;
 use crate::shape::{CornerRadii, LineCap, LineJoin, Shape, Stroke};
 
 /// A value, or what is wrong with the fields.
-type Outcome<T> = Result<T, String>;
+pub(super) type Outcome<T> = Result<T, String>;
 
-fn text(error: Error) -> String {
+pub(super) fn text(error: Error) -> String {
     error.to_string()
 }
 
@@ -68,6 +70,9 @@ pub(super) struct SurfaceFields {
     corners: Option<[f32; 4]>,
     #[serde(default, deserialize_with = "some")]
     image: Option<String>,
+    #[cfg(feature = "finish")]
+    #[serde(default, deserialize_with = "some")]
+    finish: Option<FinishFields>,
 }
 
 #[derive(Deserialize)]
@@ -135,6 +140,10 @@ impl SurfaceFields {
         if let Some(name) = self.name {
             surface = surface.with_name(name);
         }
+        #[cfg(feature = "finish")]
+        if let Some(finish) = self.finish {
+            surface = surface.with_finish(finish.build(images)?);
+        }
         Ok(surface)
     }
 
@@ -149,6 +158,8 @@ impl SurfaceFields {
             ("tilt", self.tilt.is_some()),
             ("corners", self.corners.is_some()),
             ("image", self.image.is_some()),
+            #[cfg(feature = "finish")]
+            ("finish", self.finish.is_some()),
         ];
         match others.iter().find(|(_, given)| *given) {
             Some((name, _)) => Err(format!(

@@ -141,7 +141,7 @@ fn part(shadow: Shadow, canvas: &Grid) -> Result<Option<Part>, Failure> {
 }
 
 /// How long a technique draws a scene again and again.
-const BUDGET: Duration = Duration::from_millis(20);
+pub(crate) const BUDGET: Duration = Duration::from_millis(20);
 
 /// A technique that would take longer than this for one drawing is left out of it.
 const LONGEST: f64 = 4.0;

@@ -104,10 +104,15 @@ impl Picture {
 
     /// One family's methods by their settings, with a pale dot for each scene.
     pub(crate) fn of_family(family: Family, rows: &[Row]) -> Self {
-        let own = || {
-            rows.iter()
-                .filter(|row| row.family == Some(family) && !row.refused && row.method != "exact")
-        };
+        let own = rows
+            .iter()
+            .filter(|row| row.family == Some(family) && !row.refused && row.method != "exact");
+        Self::of_rows(&format!("Time against error: {family}"), own)
+    }
+
+    /// Some methods by their settings, with a pale dot for each scene.
+    pub(crate) fn of_rows<'a>(title: &str, rows: impl Iterator<Item = &'a Row> + Clone) -> Self {
+        let own = || rows.clone();
         let all = series(own());
         let panel = |what: &str, levels: fn(&Mark) -> f64, of_row: fn(&Row) -> f64| {
             let mut lines: Vec<Line> = Vec::new();
@@ -129,7 +134,7 @@ impl Picture {
             }
         };
         Self {
-            title: format!("Time against error: {family}"),
+            title: title.to_owned(),
             panels: vec![
                 panel("largest error", |m| m.max_levels, |r| r.max_levels),
                 panel("rms error", |m| m.rms_levels, |r| r.rms_levels),

@@ -1,0 +1,166 @@
+//! A surface's finish.
+
+use std::sync::Arc;
+
+use serde::Deserialize;
+
+use super::surface::{Outcome, text};
+use super::{Images, some};
+use crate::finish::{Bump, Environment, Finish, Frame, Material, Profile, Rim, ShadingModel, Tile};
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FinishFields {
+    #[serde(default, deserialize_with = "some")]
+    rim: Option<RimFields>,
+    #[serde(default, deserialize_with = "some")]
+    shading: Option<String>,
+    #[serde(default, deserialize_with = "some")]
+    material: Option<MaterialFields>,
+    #[serde(default, deserialize_with = "some")]
+    texture: Option<TextureFields>,
+    #[serde(default, deserialize_with = "some")]
+    bump: Option<BumpFields>,
+    #[serde(default, deserialize_with = "some")]
+    frame: Option<FrameFields>,
+    #[serde(default, deserialize_with = "some")]
+    environment: Option<EnvironmentFields>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RimFields {
+    width: f32,
+    height: f32,
+    #[serde(default, deserialize_with = "some")]
+    profile: Option<String>,
+    #[serde(default, deserialize_with = "some")]
+    steps: Option<u32>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MaterialFields {
+    ambient: f32,
+    diffuse: f32,
+    specular: f32,
+    shininess: f32,
+    #[serde(default, deserialize_with = "some")]
+    attenuation: Option<[f32; 3]>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct TextureFields {
+    image: String,
+    tile: [f32; 2],
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct BumpFields {
+    image: String,
+    tile: [f32; 2],
+    depth: f32,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FrameFields {
+    image: String,
+    tile: [f32; 2],
+    depth: f32,
+    degrees: f32,
+    twist: f32,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct EnvironmentFields {
+    image: String,
+    tile: [f32; 2],
+    height: f32,
+    strength: f32,
+}
+
+impl FinishFields {
+    /// The finish, its images read by `images`.
+    pub(super) fn build(self, images: &mut Images<'_>) -> Outcome<Finish> {
+        let mut finish = Finish::new();
+        if let Some(rim) = self.rim {
+            finish = finish.with_rim(rim.build()?);
+        }
+        if let Some(name) = self.shading {
+            finish = finish.with_shading(shading(&name)?);
+        }
+        if let Some(material) = self.material {
+            finish = finish.with_material(material.build()?);
+        }
+        let mut tile =
+            |name: &str, size: [f32; 2]| Tile::new(Arc::new(images(name)?), size).map_err(text);
+        if let Some(of) = self.texture {
+            finish = finish.with_texture(tile(&of.image, of.tile)?);
+        }
+        if let Some(of) = self.bump {
+            let bump = Bump::new(tile(&of.image, of.tile)?, of.depth);
+            finish = finish.with_bump(bump.map_err(text)?);
+        }
+        if let Some(of) = self.frame {
+            let [angle, twist] = [of.degrees, of.twist].map(f32::to_radians);
+            let frame = Frame::new(tile(&of.image, of.tile)?, of.depth, angle, twist);
+            finish = finish.with_frame(frame.map_err(text)?);
+        }
+        if let Some(of) = self.environment {
+            let image = tile(&of.image, of.tile)?;
+            let environment = Environment::new(image, of.height, of.strength);
+            finish = finish.with_environment(environment.map_err(text)?);
+        }
+        Ok(finish)
+    }
+}
+
+fn shading(name: &str) -> Outcome<ShadingModel> {
+    let all = ShadingModel::ALL;
+    all.into_iter()
+        .find(|model| model.shading().name() == name)
+        .ok_or_else(|| {
+            let names = all.map(|model| model.shading().name());
+            format!(
+                "finish.shading {name:?} is unknown: give {}",
+                names.join(", ")
+            )
+        })
+}
+
+impl RimFields {
+    fn build(&self) -> Outcome<Rim> {
+        let profile = match self.profile.as_deref() {
+            None | Some("quarter-round") => Profile::QuarterRound,
+            Some("bevel") => Profile::Bevel,
+            Some("cosine") => Profile::Cosine,
+            Some(other) => {
+                return Err(format!(
+                    "finish.rim.profile {other:?} is unknown: give bevel, quarter-round or cosine"
+                ));
+            }
+        };
+        let rim = Rim::new(self.width, self.height, profile).map_err(text)?;
+        match self.steps {
+            Some(steps) => rim.with_steps(steps).map_err(text),
+            None => Ok(rim),
+        }
+    }
+}
+
+impl MaterialFields {
+    fn build(&self) -> Outcome<Material> {
+        let material = Material::default()
+            .with_strengths(self.ambient, self.diffuse, self.specular)
+            .and_then(|material| material.with_shininess(self.shininess))
+            .map_err(text)?;
+        match self.attenuation {
+            Some(attenuation) => material.with_attenuation(attenuation).map_err(text),
+            None => Ok(material),
+        }
+    }
+}
