@@ -11,7 +11,9 @@ mod cache;
 mod compact;
 mod donut;
 mod export;
+mod field;
 mod gouraud;
+mod lighten;
 mod profile;
 mod refine;
 mod regions;
@@ -29,6 +31,8 @@ use glam::DVec2;
 pub use cache::MeshCache;
 pub use compact::{CompactMesh, CompactVertex};
 pub use export::meshes_to_svg;
+use field::Field;
+use lighten::lighten;
 pub use profile::Profile;
 use profile::{Knot, Pieces};
 use refine::Refinement;
@@ -38,9 +42,9 @@ pub use sink::{MeshBuffers, MeshIndex, MeshSink, MeshSlices};
 use strips::Strips;
 use tangents::{ProjectionCircle, tangent_loops};
 
-use crate::density::{EXACT_SHARE, Field, flatness};
+use crate::density::flatness;
 use crate::error::Result;
-use crate::outline::Outline;
+use crate::outline::{Edge, Outline};
 use crate::scratch::Scratch;
 use crate::shadow::{Bounds, Shadow};
 use crate::tolerance::Tolerance;
@@ -273,7 +277,7 @@ impl Shadow {
         let flat = if radius == 0.0 {
             facet
         } else {
-            flatness(FLATTENING_SHARE * levels, radius, 0.0)
+            ring_flatness(radius, levels)
         };
         let outline = self.outline(flat);
         let Some((min, max)) = outline.bounds() else {
@@ -298,7 +302,7 @@ impl Shadow {
         }
 
         let pieces = Pieces::within(levels / 255.0 * SLACK);
-        let mut flat = radius * (RING_FLATNESS * levels).min(COARSEST_RING);
+        let mut flat = ring_flatness(radius, levels);
         loop {
             let circles = projection_circles(&outline, radius, flat);
             let count = circles.iter().map(Vec::len).sum::<usize>() * pieces.knots.len();
@@ -312,20 +316,17 @@ impl Shadow {
             let rings = pieces.knots.iter().map(loops).collect();
             // What errors are measured against may itself be a little off, as long as that is stated.
             let share = FIELD_SHARE * levels;
-            let field = if share > EXACT_SHARE {
-                Field::new(
-                    &self.outline(flatness(share, radius, 0.0)).moved(-center),
-                    radius,
-                )
-            } else {
-                Field::new(&self.exact_outline().moved(-center), radius)
-            };
-            let unsure = if self.is_fixed() {
-                0.0
-            } else {
-                share.max(EXACT_SHARE)
-            };
-            return Refinement::new(field, options, rings).run(center, step, unsure / 255.0);
+            let fine = flatness(share, radius, 0.0);
+            let edges = self.outline(fine).moved(-center);
+            let curved = !self.is_fixed() || edges.edges().any(|e| matches!(e, Edge::Arc(_)));
+            let unsure = if curved { CURVED * share / 255.0 } else { 0.0 } + field::NOISE;
+            let loops: Vec<_> = edges
+                .polygons(fine)
+                .iter()
+                .map(|points| lighten(points, radius, share / 255.0))
+                .collect();
+            let field = Field::new(&loops, radius);
+            return Refinement::new(field, options, rings).run(center, step, unsure);
         }
     }
 }
@@ -365,11 +366,12 @@ const UMBRA_FLATNESS: f64 = 1e-4;
 /// The same over the outline's extent, where the radius is next to nothing.
 const UMBRA_FACET: f64 = 1e-7;
 
-/// The part of the tolerance that flattening curves may use up.
-const FLATTENING_SHARE: f64 = 0.1;
+/// The part of the tolerance that a strip of chords across a disc, and lines in place of runs of them, may each use up where
+/// errors are measured.
+const FIELD_SHARE: f64 = 0.02;
 
-/// The part that it may use up where errors are measured.
-const FIELD_SHARE: f64 = 0.05;
+/// Both of them, and the strips all along the disc's edge where a circle is as large as the disc: π times one across.
+const CURVED: f64 = 4.2;
 
 /// The part of the tolerance that straight pieces of the profile may use. Were it all, as with five pieces for one level,
 /// corners would need three times the triangles for the thousandths that are left.
@@ -377,7 +379,11 @@ const SLACK: f64 = 0.85;
 
 /// How far chords of rings may be from their arcs, over the penumbra radius and a tolerance of one level. Refinement mends
 /// what is too coarse: half of it took a tenth more triangles, twice as much no fewer.
-const RING_FLATNESS: f64 = 0.005;
+const RING_FLATNESS: f64 = 0.01;
+
+fn ring_flatness(radius: f64, levels: f64) -> f64 {
+    radius * (RING_FLATNESS * levels).min(COARSEST_RING)
+}
 
 /// The same at large tolerances: beyond, rings could cross.
 const COARSEST_RING: f64 = 0.02;
