@@ -204,7 +204,9 @@ impl Shadow {
 
     /// Gives the triangles of [`Shadow::mesh`] to a sink.
     ///
-    /// For rounded rectangles and circles nothing is allocated once `scratch` and the sink have grown.
+    /// Nothing is allocated once `scratch` and the sink have grown, for rounded rectangles and circles wherever they are and
+    /// for other shadows that stay as and where they are: of these it keeps the last sixteen. Where more of them come
+    /// again, or move, a [`MeshCache`] keeps them.
     ///
     /// # Errors
     /// What the sink refuses, before it is given anything.
@@ -218,7 +220,9 @@ impl Shadow {
         if let Some(quality) = self.strips(&options, scratch, sink)? {
             return Ok(quality);
         }
-        let mesh = self.refined(&options);
+        let mesh = scratch
+            .meshes
+            .same(self, &options, || self.refined(&options));
         sink.begin(mesh.vertices.len(), mesh.indices.len() / 3)?;
         for &vertex in &mesh.vertices {
             sink.vertex(vertex);
