@@ -142,7 +142,7 @@ fn a_warm_mesh_of_a_rounded_rectangle_takes_no_memory() {
 fn a_warm_mesh_of_another_outline_takes_no_memory_where_it_stays() {
     let light = Light::android(200.0).unwrap();
     let points = [[20.0, 20.0], [90.0, 30.0], [40.0, 50.0], [60.0, 110.0]];
-    let kite = Shape::polygon(&[points], penumbral::FillRule::NonZero).unwrap();
+    let kite = Shape::polygon(&[points], FillRule::NonZero).unwrap();
     let shadow = light.cast(&kite, 4.0, 0.0).unwrap();
     let (mut buffers, mut scratch) = (MeshBuffers::<u16>::new(), Scratch::new());
     let mut into = || {
