@@ -9,11 +9,9 @@ pub(crate) mod circle;
 mod cubic;
 pub(crate) mod direct;
 pub(crate) mod exact;
-mod field;
 pub(crate) mod frame;
 pub(crate) mod grid;
 pub(crate) mod lanes;
-pub(crate) mod lines;
 pub(crate) mod nine_patch;
 pub(crate) mod quadrature;
 pub(crate) mod rounded;
@@ -36,7 +34,6 @@ use crate::tolerance::Tolerance;
 
 pub(crate) use area::at_point;
 pub(crate) use buffer::clear;
-pub(crate) use field::Field;
 
 /// How far flattening may move the density of `exact`, in levels.
 pub(crate) const EXACT_SHARE: f64 = 0.02;

@@ -8,10 +8,13 @@
 //! The tangent construction follows US 9,639,976; pixels ([`Shadow::fill_a8`]) and point queries do not use it.
 
 mod cache;
+mod cells;
 mod compact;
 mod donut;
 mod export;
+mod field;
 mod gouraud;
+mod lighten;
 mod profile;
 mod refine;
 pub(crate) mod regions;
@@ -28,8 +31,11 @@ use core::f64::consts::FRAC_2_PI;
 use glam::DVec2;
 
 pub use cache::MeshCache;
+use cells::Cells;
 pub use compact::{CompactMesh, CompactVertex};
 pub use export::meshes_to_svg;
+use field::Field;
+use lighten::lighten;
 pub use profile::Profile;
 use profile::{Knot, Pieces};
 use refine::Refinement;
@@ -39,9 +45,9 @@ pub use sink::{MeshBuffers, MeshIndex, MeshSink, MeshSlices};
 use strips::Strips;
 use tangents::{ProjectionCircle, tangent_loops};
 
-use crate::density::{EXACT_SHARE, Field, flatness};
+use crate::density::flatness;
 use crate::error::Result;
-use crate::outline::Outline;
+use crate::outline::{Edge, Outline};
 use crate::scratch::Scratch;
 use crate::shadow::{Bounds, Shadow};
 use crate::tolerance::Tolerance;
@@ -201,7 +207,9 @@ impl Shadow {
 
     /// Gives the triangles of [`Shadow::mesh`] to a sink.
     ///
-    /// For rounded rectangles and circles nothing is allocated once `scratch` and the sink have grown.
+    /// Nothing is allocated once `scratch` and the sink have grown, for rounded rectangles and circles wherever they are and
+    /// for other shadows that stay as and where they are: of these it keeps the last sixteen. Where more of them come
+    /// again, or move, a [`MeshCache`] keeps them.
     ///
     /// # Errors
     /// What the sink refuses, before it is given anything.
@@ -215,7 +223,9 @@ impl Shadow {
         if let Some(quality) = self.strips(&options, scratch, sink)? {
             return Ok(quality);
         }
-        let mesh = self.refined(&options);
+        let mesh = scratch
+            .meshes
+            .same(self, &options, || self.refined(&options));
         sink.begin(mesh.vertices.len(), mesh.indices.len() / 3)?;
         for &vertex in &mesh.vertices {
             sink.vertex(vertex);
@@ -274,7 +284,7 @@ impl Shadow {
         let flat = if radius == 0.0 {
             facet
         } else {
-            flatness(FLATTENING_SHARE * levels, radius, 0.0)
+            ring_flatness(radius, levels)
         };
         let outline = self.outline(flat);
         let Some((min, max)) = outline.bounds() else {
@@ -299,7 +309,7 @@ impl Shadow {
         }
 
         let pieces = Pieces::within(levels / 255.0 * SLACK);
-        let mut flat = radius * (RING_FLATNESS * levels).min(COARSEST_RING);
+        let mut flat = ring_flatness(radius, levels);
         loop {
             let circles = projection_circles(&outline, radius, flat);
             let count = circles.iter().map(Vec::len).sum::<usize>() * pieces.knots.len();
@@ -313,20 +323,17 @@ impl Shadow {
             let rings = pieces.knots.iter().map(loops).collect();
             // What errors are measured against may itself be a little off, as long as that is stated.
             let share = FIELD_SHARE * levels;
-            let field = if share > EXACT_SHARE {
-                Field::new(
-                    &self.outline(flatness(share, radius, 0.0)).moved(-center),
-                    radius,
-                )
-            } else {
-                Field::new(&self.exact_outline().moved(-center), radius)
-            };
-            let unsure = if self.is_fixed() {
-                0.0
-            } else {
-                share.max(EXACT_SHARE)
-            };
-            return Refinement::new(field, options, rings).run(center, step, unsure / 255.0);
+            let fine = flatness(share, radius, 0.0);
+            let edges = self.outline(fine).moved(-center);
+            let curved = !self.is_fixed() || edges.edges().any(|e| matches!(e, Edge::Arc(_)));
+            let unsure = if curved { CURVED * share / 255.0 } else { 0.0 } + cells::NOISE;
+            let loops: Vec<_> = edges
+                .polygons(fine)
+                .iter()
+                .map(|points| lighten(points, radius, share / 255.0))
+                .collect();
+            let field = Field::Level(Cells::new(&loops, radius));
+            return Refinement::new(field, options, rings).run(center, step, unsure);
         }
     }
 }
@@ -366,11 +373,12 @@ const UMBRA_FLATNESS: f64 = 1e-4;
 /// The same over the outline's extent, where the radius is next to nothing.
 const UMBRA_FACET: f64 = 1e-7;
 
-/// The part of the tolerance that flattening curves may use up.
-const FLATTENING_SHARE: f64 = 0.1;
+/// The part of the tolerance that a strip of chords across a disc, and lines in place of runs of them, may each use up where
+/// errors are measured.
+const FIELD_SHARE: f64 = 0.02;
 
-/// The part that it may use up where errors are measured.
-const FIELD_SHARE: f64 = 0.05;
+/// Both of them, and the strips all along the disc's edge where a circle is as large as the disc: π times one across.
+const CURVED: f64 = 4.2;
 
 /// The part of the tolerance that straight pieces of the profile may use. Were it all, as with five pieces for one level,
 /// corners would need three times the triangles for the thousandths that are left.
@@ -378,7 +386,11 @@ const SLACK: f64 = 0.85;
 
 /// How far chords of rings may be from their arcs, over the penumbra radius and a tolerance of one level. Refinement mends
 /// what is too coarse: half of it took a tenth more triangles, twice as much no fewer.
-const RING_FLATNESS: f64 = 0.005;
+const RING_FLATNESS: f64 = 0.01;
+
+fn ring_flatness(radius: f64, levels: f64) -> f64 {
+    radius * (RING_FLATNESS * levels).min(COARSEST_RING)
+}
 
 /// The same at large tolerances: beyond, rings could cross.
 const COARSEST_RING: f64 = 0.02;

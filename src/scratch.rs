@@ -1,5 +1,6 @@
 //! Memory that one drawing leaves to the next.
 
+use core::num::NonZeroUsize;
 use core::ops::Range;
 
 use fearless_simd::Level;
@@ -10,8 +11,12 @@ use crate::density::grid::GridScratch;
 use crate::density::nine_patch::NinePatchScratch;
 use crate::density::rows::Rows;
 use crate::hidden::inside::Inside;
+use crate::mesh::MeshCache;
 use crate::mesh::strips::StripScratch;
 use crate::outline::Edge;
+
+/// Meshes that are kept: enough for one picture's few outlines, and at most some tens of megabytes.
+const KEPT_MESHES: NonZeroUsize = NonZeroUsize::MIN.saturating_add(15);
 
 /// Buffers that drawings need while they work, kept so that drawing again allocates little or nothing, and tables and
 /// templates of the last corners. What it holds changes no result: any scratch serves any shadow.
@@ -28,6 +33,8 @@ pub struct Scratch {
     pub(crate) inside: Inside,
     pub(crate) fusion: Fusion,
     pub(crate) strips: StripScratch,
+    /// Meshes that took a triangulation.
+    pub(crate) meshes: MeshCache,
     /// The columns of a row that are to be drawn.
     pub(crate) wanted: Vec<Range<i64>>,
 }
@@ -56,6 +63,7 @@ impl Scratch {
             inside: Inside::default(),
             fusion: Fusion::default(),
             strips: StripScratch::default(),
+            meshes: MeshCache::new(KEPT_MESHES),
             wanted: Vec::new(),
         }
     }

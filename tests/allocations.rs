@@ -137,3 +137,21 @@ fn a_warm_mesh_of_a_rounded_rectangle_takes_no_memory() {
         }
     }
 }
+
+#[test]
+fn a_warm_mesh_of_another_outline_takes_no_memory_where_it_stays() {
+    let light = Light::android(200.0).unwrap();
+    let points = [[20.0, 20.0], [90.0, 30.0], [40.0, 50.0], [60.0, 110.0]];
+    let kite = Shape::polygon(&[points], FillRule::NonZero).unwrap();
+    let shadow = light.cast(&kite, 4.0, 0.0).unwrap();
+    let (mut buffers, mut scratch) = (MeshBuffers::<u16>::new(), Scratch::new());
+    let mut into = || {
+        buffers.clear();
+        let quality = shadow.mesh_into(&mut buffers, Tolerance::ONE_LEVEL, &mut scratch);
+        assert!(quality.unwrap().complete);
+    };
+    into();
+    assert_eq!(allocation_counter::measure(into).count_total, 0);
+    let mesh = shadow.mesh(Tolerance::ONE_LEVEL);
+    assert_eq!(buffers.vertices, mesh.vertices());
+}

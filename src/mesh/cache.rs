@@ -77,34 +77,49 @@ impl MeshCache {
         let step = step(shadow, &options);
         self.key.clear();
         write_key(shadow, &options, origin, step, &mut self.key);
+        let index = self.find(|| {
+            let mut options = options;
+            let mut alike = 0.0;
+            if step > 0.0 {
+                alike = options.tolerance.as_levels() * ALIKE_SHARE;
+                options.tolerance = options.tolerance.divided(1.0 / (1.0 - ALIKE_SHARE));
+            }
+            let mut mesh = shadow.moved(-origin).mesh(options);
+            mesh.error_levels += alike;
+            mesh
+        });
+        (&self.meshes[index].mesh, origin.to_array())
+    }
+
+    /// The mesh of a shadow that differs in nothing, not even in its place, or else the one that is made.
+    pub(super) fn same(
+        &mut self,
+        shadow: &Shadow,
+        options: &MeshOptions,
+        make: impl FnOnce() -> ShadowMesh,
+    ) -> &ShadowMesh {
+        self.key.clear();
+        write_key(shadow, options, DVec2::ZERO, 0.0, &mut self.key);
+        let index = self.find(make);
+        &self.meshes[index].mesh
+    }
+
+    /// Where the mesh with the key that is asked for is kept, made unless it was.
+    fn find(&mut self, make: impl FnOnce() -> ShadowMesh) -> usize {
         let found = self.meshes.iter().position(|kept| kept.key == self.key);
         let index = if let Some(index) = found {
             self.hits += 1;
             index
         } else {
             self.misses += 1;
-            self.make(shadow, options, origin, step)
+            self.keep(make())
         };
-        let kept = &mut self.meshes[index];
-        kept.used = self.hits + self.misses;
-        (&kept.mesh, origin.to_array())
+        self.meshes[index].used = self.hits + self.misses;
+        index
     }
 
-    /// Makes the mesh with `origin` moved to zero, and says where it is kept.
-    fn make(
-        &mut self,
-        shadow: &Shadow,
-        mut options: MeshOptions,
-        origin: DVec2,
-        step: f64,
-    ) -> usize {
-        let mut alike = 0.0;
-        if step > 0.0 {
-            alike = options.tolerance.as_levels() * ALIKE_SHARE;
-            options.tolerance = options.tolerance.divided(1.0 / (1.0 - ALIKE_SHARE));
-        }
-        let mut mesh = shadow.moved(-origin).mesh(options);
-        mesh.error_levels += alike;
+    /// Keeps a mesh in place of the one that was not used for longest, and says where.
+    fn keep(&mut self, mesh: ShadowMesh) -> usize {
         let kept = Kept {
             key: self.key.clone(),
             mesh,

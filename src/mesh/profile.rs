@@ -90,12 +90,13 @@ pub(crate) struct Pieces {
 impl Pieces {
     /// The fewest pieces within `error` (density), of up to 41.
     pub(crate) fn within(error: f64) -> &'static Self {
-        static TABLE: OnceLock<Vec<Pieces>> = OnceLock::new();
+        static TABLE: [OnceLock<Pieces>; 21] = [const { OnceLock::new() }; 21];
         // Even numbers are no better than the odd number before: the middle piece goes straight through the point of
         // inflection, which a knot there would waste.
-        let table = TABLE.get_or_init(|| (0..=20).map(Pieces::balanced).collect());
-        let index = table.iter().position(|pieces| pieces.error <= error);
-        &table[index.unwrap_or(table.len() - 1)]
+        let pieces = |inner: usize| TABLE[inner].get_or_init(|| Self::balanced(inner as u32));
+        let last = TABLE.len() - 1;
+        let enough = (0..last).find(|&inner| pieces(inner).error <= error);
+        pieces(enough.unwrap_or(last))
     }
 
     /// 2 `inner` + 1 pieces: 0 at -1, 1 at 1, and `inner` knots on either side of the outline.

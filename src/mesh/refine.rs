@@ -11,13 +11,13 @@ use glam::DVec2;
 use spade::handles::{FixedUndirectedEdgeHandle, FixedVertexHandle};
 use spade::{FloatTriangulation, Point2, Triangulation, mitigate_underflow};
 
+use super::field::Field;
 use super::profile::Profile;
 use super::regions::{Face, Region, Triangles, Vertex, faces};
-use super::samples::{Weights, mix, mix_densities, worst};
+use super::samples::{Samples, Weights, mix, mix_densities};
 use super::settle::settle;
 use super::umbra::{self, LoopVertex};
 use super::{MeshOptions, MeshVertex, Ring, ShadowMesh};
-use crate::density::Field;
 
 /// Rounds of refinement at most. Each halves the larger triangles: the finest tolerance takes about 12.
 const ROUNDS: usize = 40;
@@ -45,7 +45,7 @@ const SPACING: f64 = 0.2;
 const LEAST_SHARE: f64 = 0.25;
 
 /// From which part of the limit on the way from samples to the tops beside them is gone.
-const NEAR: f64 = 0.7;
+const NEAR: f64 = 0.8;
 
 /// What sampling found out about a triangle.
 #[derive(Debug, Clone, Copy)]
@@ -70,6 +70,9 @@ pub(super) struct Refinement {
     offsets: Vec<f64>,
     umbra: Vec<Vec<FixedVertexHandle>>,
     assessed: HashMap<[usize; 3], Assessment>,
+    samples: Samples,
+    /// Where they are.
+    points: Vec<DVec2>,
 }
 
 impl Refinement {
@@ -86,6 +89,8 @@ impl Refinement {
             offsets: rings.iter().map(offset).collect(),
             umbra: Vec::new(),
             assessed: HashMap::new(),
+            samples: Samples::default(),
+            points: Vec::new(),
         };
         for (index, (_, loops)) in rings.iter().enumerate() {
             for points in loops {
@@ -212,16 +217,22 @@ impl Refinement {
             exact_error: 0.0,
             sure: surely,
         };
-        // Where a vertex would mend nothing there is no error to be mended.
-        let look = |weights: Weights| {
-            let exact = field.at(mix(at, weights));
-            let density = mix_densities(densities, weights);
-            result.exact_error = result.exact_error.max((density - exact).abs());
-            let mendable = (0..3).all(|i| !fixed[i] || weights[i] > 0.0);
-            if mendable {
-                density - profile.in_place_of(exact)
-            } else {
-                0.0
+        let points = &mut self.points;
+        let look = |samples: &[Weights], errors: &mut [f64]| {
+            points.clear();
+            points.extend(samples.iter().map(|&weights| mix(at, weights)));
+            field.at_all(points, errors);
+            for (weights, error) in samples.iter().zip(errors) {
+                let density = mix_densities(densities, *weights);
+                let exact = *error;
+                result.exact_error = result.exact_error.max((density - exact).abs());
+                // Where a vertex would mend nothing there is no error to be mended.
+                let mendable = (0..3).all(|i| !fixed[i] || weights[i] > 0.0);
+                *error = if mendable {
+                    density - profile.in_place_of(exact)
+                } else {
+                    0.0
+                };
             }
         };
         let (parts, near) = if surely {
@@ -229,7 +240,7 @@ impl Refinement {
         } else {
             (COARSE, f64::INFINITY)
         };
-        let top = worst(at, parts, SPACING * radius, near, look, |_, _| ());
+        let top = self.samples.worst(at, parts, SPACING * radius, near, look);
         (result.error, result.worst) = (top.0, mix(at, top.1));
         self.assessed.insert(key, result);
         (key, result)

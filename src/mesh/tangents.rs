@@ -54,8 +54,17 @@ fn tangent_loop(circles: &[ProjectionCircle], t: f64, flatness: f64) -> Vec<DVec
         })
         .collect();
     let bends_away = |i: usize| turns[i % count] * side <= 0.0;
-    let is_slight =
-        |i: usize| bends_away(i) && radius(i) * (1.0 - cos(turns[i % count] / 2.0)) <= flatness;
+    // Where it bends inwards the strips of both edges overlap. The way by the vertex counts that part twice, the one vertex
+    // once: it is in neither loop as long as both strips hold it.
+    let length = |i: usize| (circles[(i + 1) % count].center - circles[i].center).length();
+    let overlaps = |i: usize| {
+        let i = i % count;
+        radius(i) * turns[i].abs() <= length(i).min(length((i + count - 1) % count))
+    };
+    let is_slight = |i: usize| {
+        (bends_away(i) || overlaps(i))
+            && radius(i) * (1.0 - cos(turns[i % count] / 2.0)) <= flatness
+    };
     let halfway = |i: usize| {
         let turn = turns[i % count] / 2.0;
         let before = normals[(i + count - 1) % count];

@@ -5,11 +5,11 @@ use core::f64::consts::{FRAC_2_PI, TAU};
 use glam::DVec2;
 use libm::{cos, sin};
 
+use super::field::Field;
 use super::profile::{Knot, Pieces};
 use super::refine::Refinement;
 use super::tangents::{ProjectionCircle, tangent_loops, tangent_normal};
-use super::{COARSEST_RING, MeshOptions, NARROWEST, RING_FLATNESS, SLACK, ShadowMesh, umbra};
-use crate::density::Field;
+use super::{MeshOptions, NARROWEST, SLACK, ShadowMesh, ring_flatness, umbra};
 use crate::error::MAX_COORDINATE;
 use crate::outline::{Winding, resolve_loops};
 use crate::path::{FillRule, arc_steps};
@@ -86,7 +86,7 @@ impl TiltedShadow {
         }
         let radius = least.max(most * SMALLEST);
         let levels = options.tolerance.as_levels();
-        let share = (RING_FLATNESS * levels).min(COARSEST_RING);
+        let share = ring_flatness(1.0, levels);
         let facing = seen.facing([min - center, max - center]);
         let pieces = Pieces::within(levels / 255.0 * SLACK);
         let count = circles.iter().map(Vec::len).sum::<usize>() * pieces.knots.len();
@@ -121,7 +121,10 @@ impl TiltedShadow {
         let sampled = least.max(most * SAMPLED);
         // Where the penumbra is narrower than samples go by, rounding counts for more.
         let unsure = step * FRAC_2_PI * (1.0 / radius - 1.0 / sampled);
-        let field = Field::of_tilted(seen.loops, sampled);
+        let field = Field::Tilted {
+            loops: seen.loops,
+            radius: sampled,
+        };
         Refinement::new(field, options, rings).run(center, step, unsure)
     }
 

@@ -9,7 +9,7 @@ use super::corner::Corner;
 use super::fan::{Bends, Fan, Rings};
 use super::ray::MIDDLE;
 use super::{APART, SIGNS};
-use crate::mesh::samples::{Weights, mix, mix_densities, worst};
+use crate::mesh::samples::{Samples, Weights, mix, mix_densities};
 
 /// Strips in penumbra radii, for rectangles of any size that have these corners.
 #[derive(Debug, Default)]
@@ -63,6 +63,7 @@ pub(super) struct Builder {
     errors: [Vec<[f64; 2]>; 4],
     /// The triangles of one corner that speak for those of equal corners, by their fan and points.
     measured: HashSet<[usize; 4]>,
+    samples: Samples,
 }
 
 impl Template {
@@ -263,18 +264,22 @@ impl Builder {
                 }
                 let whole = whole(stretch);
                 let at = [0, 1, 2].map(|i: usize| at[i] + SIGNS[quarters[i]] * stretch);
-                let error_at =
-                    |weights| mix_densities(densities, weights) - whole.density(mix(at, weights));
-                let beside = |weights: Weights, error: f64| {
+                let errors = |samples: &[Weights], errors: &mut [f64]| {
+                    for (&weights, error) in samples.iter().zip(errors) {
+                        let exact = whole.density(mix(at, weights));
+                        *error = mix_densities(densities, weights) - exact;
+                    }
+                };
+                let (error, _) = self.samples.worst(at, parts, SPACING, near, errors);
+                most = most.max(error);
+                for (weights, error) in self.samples.all() {
                     for (place, weight) in places.into_iter().zip(weights) {
                         if weight >= BESIDE {
                             let [least, most] = &mut self.errors[place.fan][place.point];
                             (*least, *most) = (least.min(error), most.max(error));
                         }
                     }
-                };
-                let (error, _) = worst(at, parts, SPACING, near, error_at, beside);
-                most = most.max(error);
+                }
             }
         }
         most
