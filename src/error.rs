@@ -37,7 +37,7 @@ pub type Result<T, E = Error> = core::result::Result<T, E>;
 /// | [`NotFlat`](Error::NotFlat) | [`Pose::of_corners`](crate::Pose::of_corners) with the elevations 5, 9, 14, 11 |
 /// | [`NotOpaque`](Error::NotOpaque) | a scene's background `#fafafa80` |
 /// | [`NotInSvg`](Error::NotInSvg) | `Scene::to_svg` of a scene with linear blending |
-/// | `NotFinished` (feature `finish`) | a tilted surface with a finish |
+/// | [`NotFinished`](Error::NotFinished) | a tilted surface with a finish (feature `finish`) |
 /// | [`NotClipped`](Error::NotClipped) | `Surface::clipped` of a tilted surface |
 /// | [`Stroke`](Error::Stroke) | a stroke of more vertices than a `u32` counts |
 /// | [`Scene`](Error::Scene) | a scene file that ends early, has an unknown field or any of the above |
@@ -133,7 +133,6 @@ pub enum Error {
     #[error("a tilted surface and an image are not clipped: put them outside of the clipped group")]
     NotClipped,
     /// A finish on a tilted surface or an image.
-    #[cfg(feature = "finish")]
     #[error("a tilted surface and an image take no finish: leave it out")]
     NotFinished,
     /// A stroke that cannot be followed.
