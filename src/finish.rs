@@ -114,4 +114,34 @@ impl Finish {
         self.detail.environment = Some(environment);
         self
     }
+
+    /// The rim, if there is one.
+    #[must_use]
+    pub fn rim(&self) -> Option<&Rim> {
+        self.rim.as_ref()
+    }
+
+    /// The model that the rim is shaded by.
+    #[must_use]
+    pub fn shading(&self) -> ShadingModel {
+        self.shading
+    }
+
+    /// The material.
+    #[must_use]
+    pub fn material(&self) -> &Material {
+        &self.material
+    }
+
+    /// The colour of a pixel of the flat part: red, green and blue of the fill there, its middle and its side (scene units).
+    #[must_use]
+    pub fn flat_color(
+        &self,
+        fill: [u8; 3],
+        middle: [f64; 2],
+        side: f64,
+        lighting: &Lighting,
+    ) -> [u8; 3] {
+        self.detail.color(fill, middle.into(), side, lighting)
+    }
 }

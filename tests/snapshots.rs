@@ -15,7 +15,7 @@ use penumbral::{Renderer, Scene, Tolerance};
 use tiny_skia::{Pixmap, PixmapPaint, Transform};
 
 /// The name of each picture, the folder of its scene, and the scale at which it is drawn.
-const PICTURES: &[(&str, &str, f32)] = &[
+const PICTURES: [(&str, &str, f32); 10] = [
     ("card", SNAPSHOTS, 1.0),
     ("layers", SNAPSHOTS, 1.0),
     ("outlines", SNAPSHOTS, 1.0),
@@ -27,8 +27,6 @@ const PICTURES: &[(&str, &str, f32)] = &[
     ("floating-button", SCENES, 0.25),
     ("menu-over-cards", SCENES, 0.25),
     ("shapes", SCENES, 0.16),
-    #[cfg(feature = "finish")]
-    ("rims", SCENES, 0.4),
 ];
 
 const SNAPSHOTS: &str = "tests/snapshots";

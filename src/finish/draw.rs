@@ -67,8 +67,9 @@ impl<'a> Finished<'a> {
     fn flat(&self, grid: &Grid, column: u32, row: u32) -> [u8; 3] {
         let side = 1.0 / grid.pixels_per_unit();
         let middle = grid.corner() + DVec2::new(f64::from(column), f64::from(row)) + 0.5;
-        let detail = &self.finish.detail;
-        detail.color(self.fill, middle * side, side, &self.lighting)
+        let middle = (middle * side).to_array();
+        self.finish
+            .flat_color(self.fill, middle, side, &self.lighting)
     }
 
     fn shaded(&self, mesh: &RimMesh, grid: &Grid) -> Shaded {
