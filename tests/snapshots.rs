@@ -142,7 +142,7 @@ fn pictures_equal_their_snapshots() {
     let complaints: Vec<String> = PICTURES
         .into_iter()
         .filter_map(|(name, folder, scale)| {
-            check(name, &render(&scene_text(folder, name), *scale)).err()
+            check(name, &render(&scene_text(folder, name), scale)).err()
         })
         .collect();
     assert!(complaints.is_empty(), "\n{}", complaints.join("\n"));
