@@ -126,7 +126,8 @@ fn reach(radius: f64) -> f64 {
 
 impl Shadow {
     /// The key of the shadow's mask and the place for it, on so many pixels a scene unit; none where the shadow is not one
-    /// of a rounded rectangle with circular corners, or one mask would be larger than a picture may be.
+    /// of a rounded rectangle with circular corners, this is thinner than the steps that keys round to, or one mask would be
+    /// larger than a picture may be.
     ///
     /// ```
     /// use penumbral::{Color, Grid, Light, NinePatch, Paint, Scratch, Shape, Tolerance};
@@ -184,6 +185,9 @@ impl Shadow {
                     (whole + 1.0, 0)
                 }
             });
+            if near == far {
+                return None;
+            }
             key.sides[axis] = near.1;
             key.sides[axis + 2] = far.1;
             place.min[axis] = near.0 as i64 - reach;
@@ -361,6 +365,22 @@ mod tests {
                 light.cast(&card, 1.0, 0.0).unwrap()
             })
         })
+    }
+
+    #[test]
+    fn slivers_have_a_mask_or_no_key() {
+        let light = Light::directional([0.0, 0.0], 6.0).unwrap();
+        let mut keys = 0;
+        for index in 0_u8..100 {
+            let width = f32::from(index + 1) * 0.000_3;
+            let card = Shape::rect(3.0 + f32::from(index) * 0.173, 5.0, width, 40.0).unwrap();
+            let shadow = light.cast(&card, 1.0, 0.0).unwrap();
+            if let Some((key, _)) = shadow.key(1.0, Tolerance::ONE_LEVEL) {
+                NinePatch::draw(&key, &mut Scratch::new()).unwrap();
+                keys += 1;
+            }
+        }
+        assert!((50..100).contains(&keys), "{keys}");
     }
 
     #[test]
