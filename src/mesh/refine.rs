@@ -19,8 +19,9 @@ use super::settle::settle;
 use super::umbra::{self, LoopVertex};
 use super::{MeshOptions, MeshVertex, Ring, ShadowMesh};
 
-/// Rounds of refinement at most. Each halves the larger triangles: the finest tolerance takes about 12.
-const ROUNDS: usize = 40;
+/// Rounds of refinement at most. Each halves the larger triangles: the finest tolerance takes about 12; but the last vertices between a
+/// comb's teeth came one a round, and 40 were too few.
+const ROUNDS: usize = 200;
 
 /// Vertices nearer to a ring than this, over the penumbra radius, are put on it.
 const BESIDE: f64 = 1e-3;
