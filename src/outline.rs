@@ -225,6 +225,12 @@ impl Outline {
         Some(Self { loops }.canonical())
     }
 
+    /// The outline of a shape: with circular arcs as they are where that can be, or else its curves cut into lines within
+    /// `flatness` of them.
+    pub(crate) fn of_shape(shape: &Shape, flatness: f64) -> Self {
+        Self::of_simple(shape).unwrap_or_else(|| Self::of_flattened(shape, flatness))
+    }
+
     /// The outline of a shape, its curves cut into lines within `flatness` of them.
     pub(crate) fn of_flattened(shape: &Shape, flatness: f64) -> Self {
         let polygons = flatten(shape, flatness);

@@ -82,8 +82,7 @@ impl TiltedShadow {
         heights: Range<f64>,
         circle: impl Fn(DVec3) -> Circle,
     ) -> Self {
-        let outline =
-            Outline::of_simple(shape).unwrap_or_else(|| Outline::of_flattened(shape, FLATNESS));
+        let outline = Outline::of_shape(shape, FLATNESS);
         let polygons = outline.polygons(FLATNESS).into_iter().map(|polygon| {
             let points: Vec<DVec3> = polygon.into_iter().map(|p| pose.place(p)).collect();
             cut(&cut(&points, |p| p.z - heights.start), |p| {

@@ -468,7 +468,7 @@ fn layer(scene: &Scene, surface: &Surface, rank: u32, window: &Window) -> Result
         rank,
         fill,
         weight: surface.weight(),
-        is_shaded: !matches!(surface.form(), Form::Posed(_)),
+        is_shaded: surface.receives(),
         grid,
         first,
     }))

@@ -100,8 +100,7 @@ impl Writer<'_> {
         let Color { r, g, b, .. } = surface.fill();
         let fill = Color::rgb(r, g, b);
         let weight = number(f64::from(surface.weight()), 4);
-        let is_posed = matches!(surface.form(), Form::Posed(_));
-        let level = if !is_posed && self.stage.is_shaded(receiver)? {
+        let level = if surface.receives() && self.stage.is_shaded(receiver)? {
             self.level(receiver)?
         } else {
             None

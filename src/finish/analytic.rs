@@ -23,8 +23,7 @@ impl RimSurface {
     /// The surface of a rim along a shape's outline.
     #[must_use]
     pub fn new(shape: &Shape, rim: &Rim) -> Self {
-        let outline =
-            Outline::of_simple(shape).unwrap_or_else(|| Outline::of_flattened(shape, FLAT));
+        let outline = Outline::of_shape(shape, FLAT);
         Self::of_edges(outline.edges().copied().collect(), rim)
     }
 

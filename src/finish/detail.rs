@@ -100,10 +100,10 @@ impl Detail {
         }
         let mut slope = DVec2::ZERO;
         if let Some(bump) = &self.bump {
-            slope += slope_of(&bump.heights, 0, middle, side) * bump.depth;
+            slope += slope_of(&bump.heights, middle, side) * bump.depth;
         }
         if let Some(frame) = &self.frame {
-            slope += slope_of(&frame.grain, 0, middle, side) * frame.depth;
+            slope += slope_of(&frame.grain, middle, side) * frame.depth;
         }
         let normal = (-slope).extend(1.0).normalize();
         let point = middle.extend(0.0).to_array();
@@ -127,13 +127,13 @@ fn lit(fill: DVec3, intensity: Intensity) -> DVec3 {
     fill * f64::from(intensity.body) + 255.0 * f64::from(intensity.gloss)
 }
 
-/// The slope of a channel, per scene unit: from the averages over squares to either side, no smaller than a pixel, and than a
+/// The slope of the red channel, per scene unit: from the averages over squares to either side, no smaller than a pixel, and than a
 /// texel, over which heights are then linear.
-fn slope_of(tile: &Tile, channel: usize, middle: DVec2, side: f64) -> DVec2 {
+fn slope_of(tile: &Tile, middle: DVec2, side: f64) -> DVec2 {
     let size = tile.texel().max(DVec2::splat(side));
     let along = |way: DVec2, length: f64| {
         let [after, before] =
-            [way, -way].map(|way| tile.average(middle + way * (length / 2.0), size)[channel]);
+            [way, -way].map(|way| tile.average(middle + way * (length / 2.0), size).x);
         (after - before) / length
     };
     DVec2::new(along(DVec2::X, size.x), along(DVec2::Y, size.y))

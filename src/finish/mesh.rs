@@ -81,9 +81,7 @@ impl RimMesh {
     /// # Errors
     /// [`Error::TooMany`](crate::Error::TooMany) when it would have more than 2^18 vertices.
     pub fn new(shape: &Shape, rim: &Rim) -> Result<Self> {
-        let flat = FLAT * rim.width();
-        let outline =
-            Outline::of_simple(shape).unwrap_or_else(|| Outline::of_flattened(shape, flat));
+        let outline = Outline::of_shape(shape, FLAT * rim.width());
         let center = outline
             .bounds()
             .map_or(DVec2::ZERO, |(min, max)| (min + max) / 2.0);

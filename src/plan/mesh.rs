@@ -45,7 +45,7 @@ fn triangles(shadow: &Shadow, radius: f64) -> f64 {
     (corners + ARC * census.arc_length / radius).min(MOST)
 }
 
-/// Fitted to the meshes of the fixtures, which have 0.8 to 1.3 times as many.
+/// Estimates from the fixtures' meshes: a forecast may be several times off.
 const CORNER: f64 = 200.0;
 const CURVE: f64 = 150.0;
 const ARC: f64 = 70.0;

@@ -222,6 +222,11 @@ impl Surface {
         &self.form
     }
 
+    /// Whether shadows fall on it: on tilted surfaces none do.
+    pub(crate) fn receives(&self) -> bool {
+        !matches!(self.form, Form::Posed(_))
+    }
+
     /// The box of the surface as it is seen from above, scene units.
     pub(crate) fn hull(&self) -> Option<(DVec2, DVec2)> {
         let corners = self.corners()?.map(DVec3::truncate);
