@@ -107,7 +107,10 @@ impl Samples {
         let along = 1.0 / ceil(length / spacing).clamp(parts, MOST.max(parts));
         let mut steps = [[0.0; 3]; 2];
         (steps[0][to], steps[0][from]) = (along, -along);
-        (steps[1][apex], steps[1][from], steps[1][to]) = (1.0 / rows, -0.5 / rows, -0.5 / rows);
+        // Straight across: in a slanted triangle the way to the apex leads far along.
+        let foot = (at[apex] - at[from]).dot(side(apex)) / (length * length);
+        steps[1][apex] = 1.0 / rows;
+        (steps[1][from], steps[1][to]) = ((foot - 1.0) / rows, -foot / rows);
         steps
     }
 
@@ -190,8 +193,7 @@ mod tests {
                 count += samples.len();
             };
             let (most, place) = Samples::default().worst(at, 4, 0.5, 0.5, errors);
-            // Less than the three hundredths that are left to what samples miss.
-            assert!((0.97 * 1.05..=1.05).contains(&most), "{most}");
+            assert!((1.04..=1.05).contains(&most), "{most}");
             assert!((mix(at, place) - right).length() < 0.2);
             assert!(count < 500, "{count}");
         }
