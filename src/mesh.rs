@@ -14,6 +14,7 @@ mod donut;
 mod export;
 mod field;
 mod gouraud;
+pub(crate) mod halving;
 mod lighten;
 mod profile;
 mod refine;
@@ -58,6 +59,7 @@ pub struct MeshOptions {
     tolerance: Tolerance,
     profile: Profile,
     max_vertices: usize,
+    quick: bool,
 }
 
 impl MeshOptions {
@@ -68,6 +70,7 @@ impl MeshOptions {
             tolerance,
             profile: Profile::Disc,
             max_vertices: 1 << 16,
+            quick: false,
         }
     }
 
@@ -82,6 +85,28 @@ impl MeshOptions {
     #[must_use]
     pub fn with_max_vertices(mut self, max_vertices: usize) -> Self {
         self.max_vertices = max_vertices;
+        self
+    }
+
+    /// With a mesh that is made as soon as may be, if it takes ten times the triangles: for outlines that change in every
+    /// frame. Otherwise time is only saved where it costs few triangles, as it does for icons under a wide penumbra.
+    ///
+    /// ```
+    /// use penumbral::{FillRule, Light, MeshOptions, Path, Shape, Tolerance};
+    ///
+    /// let mut path = Path::new();
+    /// path.move_to([0.0, 0.0]).line_to([300.0, 0.0]).line_to([150.0, 90.0]).close();
+    /// let flag = Shape::path(&path, FillRule::NonZero)?;
+    /// let shadow = Light::android(400.0)?.cast(&flag, 16.0, 0.0)?;
+    /// let options = MeshOptions::new(Tolerance::ONE_LEVEL);
+    /// let [few, soon] = [options, options.quick()].map(|options| shadow.mesh(options));
+    /// assert!(few.indices().len() < soon.indices().len());
+    /// assert!(soon.error_levels() <= 1.0);
+    /// # Ok::<(), penumbral::Error>(())
+    /// ```
+    #[must_use]
+    pub fn quick(mut self) -> Self {
+        self.quick = true;
         self
     }
 }
@@ -194,7 +219,7 @@ impl Shadow {
     pub fn mesh(&self, options: impl Into<MeshOptions>) -> ShadowMesh {
         let options = options.into();
         let mut buffers = MeshBuffers::new();
-        match self.strips(&options, &mut Scratch::new(), &mut buffers) {
+        match self.patterned(&options, &mut Scratch::new(), &mut buffers) {
             Ok(Some(quality)) => ShadowMesh {
                 vertices: buffers.vertices,
                 indices: buffers.indices,
@@ -220,7 +245,7 @@ impl Shadow {
         scratch: &mut Scratch,
     ) -> Result<MeshQuality> {
         let options = options.into();
-        if let Some(quality) = self.strips(&options, scratch, sink)? {
+        if let Some(quality) = self.patterned(&options, scratch, sink)? {
             return Ok(quality);
         }
         let mesh = scratch
@@ -237,6 +262,19 @@ impl Shadow {
             error_levels: mesh.error_levels,
             complete: mesh.complete,
         })
+    }
+
+    /// The mesh without a triangulation, if the shadow is one of those that do without.
+    fn patterned(
+        &self,
+        options: &MeshOptions,
+        scratch: &mut Scratch,
+        sink: &mut impl MeshSink,
+    ) -> Result<Option<MeshQuality>> {
+        match self.strips(options, scratch, sink)? {
+            None => halving::mesh(self, options, scratch, sink),
+            found => Ok(found),
+        }
     }
 
     /// The mesh in strips, if the shadow is one of those that have them.

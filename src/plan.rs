@@ -133,6 +133,8 @@ pub struct Costs {
     pub exact_average: f64,
     /// A rounded rectangle's triangles at one level, when its corners are new.
     pub strips: f64,
+    /// A sample of a mesh of halved squares.
+    pub sample: f64,
     /// A triangle of any other mesh at one level.
     pub triangle: f64,
     /// A triangle of a shadow without penumbra.
@@ -151,6 +153,7 @@ pub const COSTS: Costs = Costs {
     exact: 130.0,
     exact_average: 25.0,
     strips: 1e7,
+    sample: 35.0,
     triangle: 4e4,
     hard_triangle: 400.0,
 };

@@ -12,6 +12,7 @@ use crate::density::nine_patch::NinePatchScratch;
 use crate::density::rows::Rows;
 use crate::hidden::inside::Inside;
 use crate::mesh::MeshCache;
+use crate::mesh::halving::HalvingScratch;
 use crate::mesh::strips::StripScratch;
 use crate::outline::Edge;
 
@@ -33,6 +34,7 @@ pub struct Scratch {
     pub(crate) inside: Inside,
     pub(crate) fusion: Fusion,
     pub(crate) strips: StripScratch,
+    pub(crate) halving: HalvingScratch,
     /// Meshes that took a triangulation.
     pub(crate) meshes: MeshCache,
     /// The columns of a row that are to be drawn.
@@ -63,6 +65,7 @@ impl Scratch {
             inside: Inside::default(),
             fusion: Fusion::default(),
             strips: StripScratch::default(),
+            halving: HalvingScratch::default(),
             meshes: MeshCache::new(KEPT_MESHES),
             wanted: Vec::new(),
         }

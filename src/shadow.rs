@@ -53,6 +53,8 @@ pub(crate) struct Census {
     pub(crate) line_length: f64,
     pub(crate) arcs: f64,
     pub(crate) arc_length: f64,
+    /// Lines, arcs and curves as they were given.
+    pub(crate) pieces: f64,
     pub(crate) size: DVec2,
 }
 
@@ -299,6 +301,7 @@ impl Shadow {
         const LINES: f64 = 40.0;
         let mut census = Census::default();
         for edge in self.fixed.edges() {
+            census.pieces += 1.0;
             match edge {
                 Edge::Arc(arc) => {
                     census.arcs += 1.0;
@@ -318,6 +321,7 @@ impl Shadow {
         {
             let mut from = contour.start;
             for segment in &contour.segments {
+                census.pieces += 1.0;
                 census.lines += LINES;
                 census.line_length += (segment.end() - from).length();
                 from = segment.end();

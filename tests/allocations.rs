@@ -4,8 +4,8 @@
 
 use penumbral::plan::Method;
 use penumbral::{
-    Color, FillRule, Grid, Hidden, Light, MeshBuffers, Paint, Path, PixelOptions, Scratch, Shape,
-    Tolerance,
+    Color, FillRule, Grid, Hidden, Light, MeshBuffers, MeshOptions, Paint, Path, PixelOptions,
+    Scratch, Shape, Tolerance,
 };
 
 fn shapes() -> Vec<(&'static str, Vec<Shape>)> {
@@ -154,4 +154,23 @@ fn a_warm_mesh_of_another_outline_takes_no_memory_where_it_stays() {
     assert_eq!(allocation_counter::measure(into).count_total, 0);
     let mesh = shadow.mesh(Tolerance::ONE_LEVEL);
     assert_eq!(buffers.vertices, mesh.vertices());
+}
+
+#[test]
+fn a_warm_mesh_of_halved_squares_takes_no_memory() {
+    let (mut buffers, mut scratch) = (MeshBuffers::<u16>::new(), Scratch::new());
+    for (name, shapes) in shapes().into_iter().skip(3) {
+        let light = Light::directional([0.0, 3.0], 30.0).unwrap();
+        let shadow = light.cast_all(&shapes, 1.0, 0.0).unwrap();
+        let mut into = |levels| {
+            buffers.clear();
+            let options = MeshOptions::new(Tolerance::levels(levels).unwrap()).quick();
+            let quality = shadow.mesh_into(&mut buffers, options, &mut scratch);
+            assert!(quality.unwrap().complete);
+        };
+        into(1.0);
+        // Not the same mesh again: another tolerance takes other triangles.
+        let count = allocation_counter::measure(|| into(1.25)).count_total;
+        assert_eq!(count, 0, "{name}");
+    }
 }

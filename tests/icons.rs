@@ -1,4 +1,4 @@
-//! Real icons as casters: within the tolerance at every elevation, none refused.
+//! Real icons as casters, on pixels and as meshes: within the tolerance at every elevation, none refused.
 //!
 //! Fifty of them are in the fixtures; `tests/icons.sh` takes all of a package.
 
@@ -16,13 +16,19 @@ use std::{env, fs};
 
 use common::{Summary, by, densities, worst_of};
 use penumbral::plan::Method;
-use penumbral::{FillRule, Grid, Light, Path, Scratch, Shape};
+use penumbral::{
+    FillRule, Grid, Light, MeshBuffers, MeshOptions, MeshVertex, Path, Scratch, Shadow, Shape,
+    Tolerance,
+};
 
 /// In scene units: penumbra radii of 0.7, 4, 10.8 and 33 under Android's light.
 const ELEVATIONS: [f32; 4] = [0.5, 3.0, 8.0, 24.0];
 
 /// The side that icons are drawn at, in scene units.
 const SIDE: f32 = 48.0;
+
+/// The same for meshes: as large as icons are made.
+const MESH_SIDE: f32 = 24.0;
 
 /// An icon's paths, each with its fill rule.
 struct Icon {
@@ -33,8 +39,9 @@ struct Icon {
 }
 
 impl Icon {
-    fn shapes(&self) -> Vec<Shape> {
-        let scale = SIDE / self.side;
+    /// Drawn so many scene units large.
+    fn shapes(&self, side: f32) -> Vec<Shape> {
+        let scale = side / self.side;
         let shape = |(data, rule): &(String, FillRule)| {
             let path =
                 Path::from_svg(data).unwrap_or_else(|error| panic!("{}: {error}", self.name));
@@ -78,7 +85,7 @@ fn draw_all(icons: &[Icon], each: u32) {
     for elevation in ELEVATIONS {
         let mut times = Vec::new();
         for icon in icons {
-            let shapes = icon.shapes();
+            let shapes = icon.shapes(SIDE);
             let reach = (1.4 * elevation).ceil() + 4.0;
             let side = (SIDE + 2.0 * reach) as u32;
             let grid = Grid::new([-reach, -reach], [side, side], 1.0).unwrap();
@@ -96,19 +103,89 @@ fn draw_all(icons: &[Icon], each: u32) {
                 summary.add(what, worst_of(row, &exact), 1.12, &label);
             }
         }
-        times.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let at = |share: f64| times[(share * (times.len() - 1) as f64) as usize].0;
-        println!(
-            "elevation {elevation}: {} icons, cast and drawn in {:.0} us (median), {:.0} (95 %), {:.0} (99 %), {:.0} ({})",
-            icons.len(),
-            at(0.5),
-            at(0.95),
-            at(0.99),
-            at(1.0),
-            times[times.len() - 1].1
+        print_times(
+            &format!("elevation {elevation}: cast and drawn"),
+            &mut times,
         );
     }
     summary.finish();
+}
+
+/// Makes quick meshes of all icons at all elevations and compares them with `exact` at some points of every `each`th triangle.
+fn mesh_all(icons: &[Icon], each: usize) {
+    let light = Light::android(MESH_SIDE).unwrap();
+    let (mut scratch, mut buffers) = (Scratch::new(), MeshBuffers::<u32>::new());
+    let mut worst = (0.0, String::new());
+    for elevation in ELEVATIONS {
+        let (mut times, mut triangles) = (Vec::new(), 0);
+        for icon in icons {
+            let shapes = icon.shapes(MESH_SIDE);
+            buffers.clear();
+            let start = Instant::now();
+            let shadow = light.cast_all(&shapes, elevation, 0.0).unwrap();
+            let options = MeshOptions::new(Tolerance::ONE_LEVEL).quick();
+            let quality = shadow
+                .mesh_into(&mut buffers, options, &mut scratch)
+                .unwrap();
+            times.push((start.elapsed().as_secs_f64() * 1e6, &icon.name));
+            assert!(
+                quality.complete && quality.error_levels <= 1.0,
+                "{} at {elevation}",
+                icon.name
+            );
+            triangles += buffers.indices.len() / 3;
+            for corners in buffers.indices.chunks(3).step_by(each) {
+                let corners = [0, 1, 2].map(|i: usize| buffers.vertices[corners[i] as usize]);
+                let error = error_of(&shadow, corners);
+                if error > worst.0 {
+                    worst = (error, format!("{} at {elevation}", icon.name));
+                }
+            }
+        }
+        print_times(
+            &format!("elevation {elevation}: cast and meshed"),
+            &mut times,
+        );
+        println!("    {} triangles on average", triangles / icons.len());
+    }
+    println!("meshes: at most {:.3} levels off ({})", worst.0, worst.1);
+    assert!(worst.0 <= 1.0, "{worst:?}");
+}
+
+/// How far a triangle is off at its middle and those of its sides and its thirds, in levels.
+fn error_of(shadow: &Shadow, corners: [MeshVertex; 3]) -> f64 {
+    let weights = [
+        [1.0, 1.0, 1.0],
+        [1.0, 1.0, 0.0],
+        [0.0, 1.0, 1.0],
+        [1.0, 0.0, 1.0],
+        [4.0, 1.0, 1.0],
+        [1.0, 4.0, 1.0],
+        [1.0, 1.0, 4.0],
+    ];
+    let error = |weights: [f32; 3]| {
+        let mix = |value: fn(&MeshVertex) -> f32| {
+            let sum: f32 = corners.iter().zip(weights).map(|(v, w)| value(v) * w).sum();
+            sum / weights.iter().sum::<f32>()
+        };
+        let place = [mix(|v| v.position[0]), mix(|v| v.position[1])];
+        (f64::from(mix(|v| v.density)) - shadow.density_at(place)).abs() * 255.0
+    };
+    weights.into_iter().map(error).fold(0.0, f64::max)
+}
+
+fn print_times(what: &str, times: &mut [(f64, &String)]) {
+    times.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let at = |share: f64| times[(share * (times.len() - 1) as f64) as usize].0;
+    println!(
+        "{what}, {} icons, in {:.0} us (median), {:.0} (95 %), {:.0} (99 %), {:.0} ({})",
+        times.len(),
+        at(0.5),
+        at(0.95),
+        at(0.99),
+        at(1.0),
+        times[times.len() - 1].1
+    );
 }
 
 #[test]
@@ -126,6 +203,7 @@ fn fifty_icons_keep_their_tolerance() {
         .collect();
     assert_eq!(icons.len(), 50);
     draw_all(&icons, 16);
+    mesh_all(&icons, 16);
 }
 
 #[test]
@@ -144,4 +222,5 @@ fn all_icons_of_a_folder_keep_their_tolerance() {
         .collect();
     icons.sort_by(|a, b| a.name.cmp(&b.name));
     draw_all(&icons, 4);
+    mesh_all(&icons, 4);
 }

@@ -1,6 +1,8 @@
-//! What triangles cost: those of a rounded rectangle are strips, all others are refined until they are right.
+//! What triangles cost: those of a rounded rectangle are strips, those of small detail halved squares, and all others are refined
+//! until they are right.
 
 use super::{COSTS, Candidate, Method};
+use crate::mesh::halving;
 use crate::shadow::Shadow;
 
 pub(super) fn candidate(shadow: &Shadow, levels: f64) -> Candidate {
@@ -16,6 +18,11 @@ pub(super) fn candidate(shadow: &Shadow, levels: f64) -> Candidate {
         (
             COSTS.strips / coarser,
             "triangles are asked for: strips about a rounded rectangle",
+        )
+    } else if let Some(samples) = halving::forecast(shadow, levels) {
+        (
+            COSTS.sample * samples as f64,
+            "triangles are asked for: squares are halved, as the outline's detail is small",
         )
     } else {
         (

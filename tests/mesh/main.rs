@@ -6,6 +6,7 @@
 )]
 
 mod checks;
+mod halving;
 mod outlines;
 mod profiles;
 mod random;

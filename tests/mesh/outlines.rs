@@ -80,9 +80,16 @@ fn every_fixture_keeps_every_tolerance() {
     println!("{last}: worst levels and triangles {sums:.2?} within {TOLERANCES:?}");
 }
 
-/// Checks one mesh; its largest error, in levels, and its number of triangles.
+/// Checks a shadow's two meshes; their largest error, in levels, and the number of triangles where these are to be few.
 fn keeps(name: &str, shadow: &Shadow, tolerance: f32) -> (f64, usize) {
-    let mesh = shadow.mesh(levels(tolerance));
+    let few = MeshOptions::new(levels(tolerance));
+    let (error, _) = keeps_with(&format!("{name}, quick"), shadow, few.quick(), tolerance);
+    let (worst, count) = keeps_with(name, shadow, few, tolerance);
+    (worst.max(error), count)
+}
+
+fn keeps_with(name: &str, shadow: &Shadow, options: MeshOptions, tolerance: f32) -> (f64, usize) {
+    let mesh = shadow.mesh(options);
     sanity_check(&mesh);
     let name = format!("{name} {:?} within {tolerance}", shadow.bounds());
     let stated = mesh.error_levels();

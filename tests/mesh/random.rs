@@ -4,7 +4,7 @@
 use core::f32::consts::TAU;
 use core::ops::Range;
 
-use penumbral::{FillRule, Light, Path, Shadow, Shape};
+use penumbral::{FillRule, Light, MeshOptions, Path, Shadow, Shape};
 
 use crate::checks::*;
 
@@ -40,26 +40,30 @@ fn random_outlines(range: Range<u32>) {
         let shadow = cast(&shape);
         let place = (index as usize + index as usize / 8) % TOLERANCES.len();
         let tolerance = TOLERANCES[place];
-        let mesh = shadow.mesh(levels(tolerance));
-        sanity_check(&mesh);
-        assert!(
-            mesh.is_complete() && mesh.error_levels() <= f64::from(tolerance),
-            "{name} within {tolerance}: {}",
-            mesh.error_levels()
-        );
-        let error = dense_error(&shadow, &mesh, 8);
-        assert!(
-            error <= f64::from(tolerance),
-            "{name} within {tolerance}: {error}, said to be {}",
-            mesh.error_levels()
-        );
-        worst[place] = worst[place].max(error / f64::from(tolerance));
         // A nearly hard shadow has the outline's area as its mass, and so has every other.
         let hard = Light::directional([0.0, 0.0], 0.02).unwrap();
         let hard = mass(&hard.cast(&shape, 1.0, 0.0).unwrap().mesh(levels(4.0)));
-        let slack = f64::from(tolerance) / 255.0 * area(&mesh) + 1e-3 * hard;
-        let missing = mass(&mesh) - hard;
-        assert!(missing.abs() <= slack, "{name}: mass off by {missing}");
+        let options = MeshOptions::new(levels(tolerance));
+        for (way, options) in [("few", options), ("quick", options.quick())] {
+            let name = format!("{name}, {way}");
+            let mesh = shadow.mesh(options);
+            sanity_check(&mesh);
+            assert!(
+                mesh.is_complete() && mesh.error_levels() <= f64::from(tolerance),
+                "{name} within {tolerance}: {}",
+                mesh.error_levels()
+            );
+            let error = dense_error(&shadow, &mesh, 8);
+            assert!(
+                error <= f64::from(tolerance),
+                "{name} within {tolerance}: {error}, said to be {}",
+                mesh.error_levels()
+            );
+            worst[place] = worst[place].max(error / f64::from(tolerance));
+            let slack = f64::from(tolerance) / 255.0 * area(&mesh) + 1e-3 * hard;
+            let missing = mass(&mesh) - hard;
+            assert!(missing.abs() <= slack, "{name}: mass off by {missing}");
+        }
     }
     println!("Random outlines {range:?}: at most {worst:.3?} of {TOLERANCES:?} levels");
 }

@@ -1,0 +1,245 @@
+//! What a mesh may be at each sample.
+
+use glam::DVec2;
+
+use crate::density::lanes::NUMBERS;
+
+/// How far density may be off the chord between two samples, over the second differences there: where the penumbra ends between
+/// them it goes with the power 1.5 of the distance, and is off by 0.21 of the larger and 0.26 of their mean.
+const BETWEEN: f32 = 0.24;
+
+/// Densities so near to 0 or 1 are that: a thousandth of a level.
+const NOISE: f32 = 4e-6;
+
+/// From how many samples away bends are measured: about as far as triangles reach.
+const BEND: usize = 3;
+
+/// The part of the tolerance that vertices are moved by at most.
+const BALANCED: f32 = 0.9;
+
+/// Samples that are looked at together: so many are read past the end of a row.
+const RUN: usize = 8;
+
+/// Densities on a lattice, and the least and the largest that a mesh may have there so that it is within a tolerance at the
+/// sample and on the way to its neighbours.
+#[derive(Debug, Default)]
+pub(super) struct Tube {
+    /// Columns and rows.
+    size: [usize; 2],
+    limit: f32,
+    densities: Vec<f32>,
+    /// What vertices have instead, so that triangles are off both ways.
+    balanced: Vec<f32>,
+    least: Vec<f32>,
+    most: Vec<f32>,
+}
+
+/// A row of samples: what vertices have there, and between what they may be.
+pub(super) struct Row<'a> {
+    pub(super) densities: &'a [f32],
+    least: &'a [f32],
+    most: &'a [f32],
+}
+
+impl Row<'_> {
+    /// Whether a density is outside of the tube.
+    #[inline(always)]
+    pub(super) fn is_outside(&self, x: usize, density: f32) -> bool {
+        (density > self.most[x]) | (density < self.least[x])
+    }
+}
+
+/// A plane over the lattice: its density at a right triangle's corner, and how much it grows from column to column and from
+/// row to row.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Plane {
+    pub(super) corner: f32,
+    pub(super) growth: [f32; 2],
+}
+
+/// A right triangle with legs along the lattice: the sample at its right angle, the way of its legs (1 or -1) and their length.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Right {
+    pub(super) corner: [usize; 2],
+    pub(super) ways: [isize; 2],
+    pub(super) legs: usize,
+}
+
+impl Tube {
+    /// Takes memory for so many columns and rows of samples, all 0, and hands it out to be filled.
+    pub(super) fn begin(&mut self, size: [usize; 2]) -> &mut [f32] {
+        self.size = size;
+        self.densities.clear();
+        self.densities.resize(size[0] * size[1], 0.0);
+        &mut self.densities
+    }
+
+    /// Columns and rows.
+    pub(super) fn size(&self) -> [usize; 2] {
+        self.size
+    }
+
+    /// The density of a sample.
+    #[inline(always)]
+    pub(super) fn at(&self, [x, y]: [usize; 2]) -> f32 {
+        self.balanced[y * self.size[0] + x]
+    }
+
+    /// Lays the tube about the samples, and says whether they are within it: where density bends so much between them that
+    /// they are not, they are too far apart.
+    ///
+    /// Between two samples density is off their chord by a [part](BETWEEN) of the second difference, up where it is negative and
+    /// down where it is positive. What is known of it along rows and along columns adds up, as where two ends of penumbrae cross,
+    /// and what is known of it along both diagonals, if one bends up and the other down: rows and columns show nothing of that.
+    #[inline(always)]
+    pub(super) fn surround(&mut self, limit: f32) -> bool {
+        let [columns, rows] = self.size;
+        let count = columns * rows;
+        self.limit = limit;
+        for density in &mut self.densities {
+            // Sums over many edges leave some rounding where there is nothing, or all.
+            *density = if *density < NOISE { 0.0 } else { *density };
+            *density = if *density > 1.0 - NOISE {
+                1.0
+            } else {
+                *density
+            };
+        }
+        for (bounds, empty) in [(&mut self.least, -limit), (&mut self.most, limit)] {
+            bounds.clear();
+            bounds.resize(count + RUN, empty);
+        }
+        let mut bend = 0.0_f32;
+        for row in 1..rows - 1 {
+            let start = row * columns;
+            let [above, here, below] = [start - columns, start, start + columns]
+                .map(|start| &self.densities[start..start + columns]);
+            let least = &mut self.least[start..start + columns];
+            let most = &mut self.most[start..start + columns];
+            for i in 1..columns - 1 {
+                let twice = 2.0 * here[i];
+                let along = here[i - 1] + here[i + 1] - twice;
+                let across = above[i] + below[i] - twice;
+                let down = above[i - 1] + below[i + 1] - twice;
+                let up = above[i + 1] + below[i - 1] - twice;
+                let saddle = down.max(up).min(-down.min(up)).max(0.0);
+                let low = along.min(0.0) + across.min(0.0) - saddle;
+                let high = along.max(0.0) + across.max(0.0) + saddle;
+                least[i] = here[i] - BETWEEN * low - limit;
+                most[i] = here[i] - BETWEEN * high + limit;
+                bend = bend.max(high).max(-low);
+            }
+        }
+        self.balance();
+        BETWEEN * bend <= limit
+    }
+
+    /// Narrows the tube about a place (in samples) to what is left if density may be off by so much between them.
+    pub(super) fn narrow(&mut self, place: DVec2, reach: f64, by: f32) {
+        let [columns, rows] = self.size;
+        let range = |at: f64, count: usize| {
+            let first = (at - reach).floor().max(0.0) as usize;
+            first..((at + reach).ceil().max(-1.0) + 1.0).min(count as f64) as usize
+        };
+        for y in range(place.y, rows) {
+            for x in range(place.x, columns) {
+                let at = y * columns + x;
+                self.least[at] = self.least[at].max(self.densities[at] + by - self.limit);
+                self.most[at] = self.most[at].min(self.densities[at] - by + self.limit);
+                self.balanced[at] = self.balanced[at].max(self.least[at]).min(self.most[at]);
+            }
+        }
+    }
+
+    /// Moves vertices to the side to which density bends, by as much as the triangles' middles would be off to the other.
+    #[inline(always)]
+    fn balance(&mut self) {
+        let [columns, rows] = self.size;
+        self.balanced.clear();
+        self.balanced.extend_from_slice(&self.densities);
+        let most = self.limit * BALANCED;
+        for row in BEND..rows - BEND {
+            let start = row * columns;
+            let [above, here, below] = [start - BEND * columns, start, start + BEND * columns]
+                .map(|start| &self.densities[start..start + columns]);
+            let balanced = &mut self.balanced[start..start + columns];
+            let least = &self.least[start..start + columns];
+            let highest = &self.most[start..start + columns];
+            for i in BEND..columns - BEND {
+                let around = here[i - BEND] + here[i + BEND] + above[i] + below[i];
+                let bend = (around - 4.0 * here[i]) / 8.0;
+                let density = here[i] - bend.max(-most).min(most);
+                balanced[i] = density.max(0.0).min(1.0).max(least[i]).min(highest[i]);
+            }
+        }
+    }
+
+    /// How far a density is outside of the tube at a sample; less than 0 where it is within.
+    #[inline(always)]
+    pub(super) fn excess_at(&self, density: f32, [x, y]: [usize; 2]) -> f32 {
+        let sample = y * self.size[0] + x;
+        (density - self.most[sample]).max(self.least[sample] - density)
+    }
+
+    /// Whether the shadow reaches a triangle, as far as samples and the way to their neighbours tell.
+    pub(super) fn is_reached(&self, triangle: &Right) -> bool {
+        let light = Plane {
+            corner: 0.0,
+            growth: [0.0; 2],
+        };
+        self.excess(light, triangle) > -self.limit
+    }
+
+    /// A row of samples.
+    #[inline(always)]
+    pub(super) fn row(&self, y: usize) -> Row<'_> {
+        let start = y * self.size[0];
+        let row = start..start + self.size[0];
+        Row {
+            densities: &self.balanced[row.clone()],
+            least: &self.least[row.clone()],
+            most: &self.most[row],
+        }
+    }
+
+    /// How far a plane is outside of the tube over a triangle at most; less than 0 where it is within.
+    #[inline(always)]
+    pub(super) fn excess(&self, plane: Plane, triangle: &Right) -> f32 {
+        let Right { corner, ways, legs } = *triangle;
+        let growth = plane.growth[0];
+        let mut worst = [f32::NEG_INFINITY; RUN];
+        for step in 0..=legs {
+            let length = legs - step;
+            let row = corner[1].wrapping_add_signed(ways[1] * step as isize);
+            let back = if ways[0] < 0 { length } else { 0 };
+            let start = row * self.size[0] + corner[0] - back;
+            let first = plane.corner + plane.growth[1] * (ways[1] * step as isize) as f32
+                - growth * back as f32;
+            for done in (0..=length).step_by(RUN) {
+                let at = start + done;
+                let (least, most) = (&self.least[at..at + RUN], &self.most[at..at + RUN]);
+                let (done, length) = (done as f32, length as f32);
+                for lane in 0..RUN {
+                    let along = done + NUMBERS[lane];
+                    let density = first + growth * along;
+                    let excess = (density - most[lane]).max(least[lane] - density);
+                    let within = if along <= length {
+                        excess
+                    } else {
+                        f32::NEG_INFINITY
+                    };
+                    worst[lane] = if within > worst[lane] {
+                        within
+                    } else {
+                        worst[lane]
+                    };
+                }
+            }
+        }
+        let mut most = f32::NEG_INFINITY;
+        for excess in worst {
+            most = most.max(excess);
+        }
+        most
+    }
+}
