@@ -89,6 +89,9 @@ fn densities_are_fractions_and_as_right_as_they_are_to_be() {
 }
 
 /// The sum of densities is the outline's area, whatever the penumbra.
+///
+/// Where pixels are samples, the sum over one lattice is off by what an edge's profile has at the lattice's frequency, up to
+/// 0.25 level about r = 2 px: it is taken over four lattices half a pixel apart, which leave no more than `exact` may be wrong.
 #[test]
 fn mass_is_the_area_of_the_outline() {
     let (mut scratch, mut summary) = (Scratch::new(), Summary::default());
@@ -101,17 +104,24 @@ fn mass_is_the_area_of_the_outline() {
         };
         let first = bounds.min.map(|v| v.floor() - 1.0);
         let size = [0, 1].map(|axis: usize| (bounds.max[axis] - first[axis]).ceil() as u32 + 1);
-        let grid = Grid::new(first, size, 1.0).unwrap();
         let mut sum = |radius: f32, method| {
             let shadow = cast(directional(radius), &shapes);
-            let drawn = densities(&shadow, &grid, &by(method), &mut scratch);
+            let lattices = [[0.0, 0.0], [0.5, 0.0], [0.0, 0.5], [0.5, 0.5]];
+            let drawn: Vec<f32> = lattices
+                .iter()
+                .flat_map(|phase| {
+                    let first = [0, 1].map(|axis| first[axis] + phase[axis]);
+                    let grid = Grid::new(first, size, 1.0).unwrap();
+                    densities(&shadow, &grid, &by(method), &mut scratch)
+                })
+                .collect();
             let shaded = drawn.iter().filter(|density| **density > 0.0).count();
             let mass: f64 = drawn.iter().copied().map(f64::from).sum();
             (mass, shaded)
         };
         let (area, _) = sum(0.0, Some(Method::Exact));
         let label = format!("seed {seed}, {name} at r {radius} px");
-        for (what, method, allowed) in [("auto", None, 1.0), ("exact", Some(Method::Exact), 0.15)] {
+        for (what, method, allowed) in [("auto", None, 1.0), ("exact", Some(Method::Exact), 0.12)] {
             let (mass, shaded) = sum(radius, method);
             let error = (mass - area).abs() * 255.0 / (shaded.max(1) as f64);
             summary.add(format!("mass, {what}"), error as f32, allowed, &label);
