@@ -379,7 +379,7 @@ pub(crate) fn mesh(data: &[u8]) {
     let Some(shape) = bytes.shape() else {
         return;
     };
-    let Some(shadow) = shadow(&[shape], bytes.radius()) else {
+    let Some(shadow) = shadow(core::slice::from_ref(&shape), bytes.radius()) else {
         return;
     };
     let levels = f32::from(4 + bytes.below(28));
@@ -397,16 +397,13 @@ pub(crate) fn mesh(data: &[u8]) {
         assert!(vertex.position.iter().all(|v| v.is_finite()));
         assert_density(f64::from(vertex.density));
     }
-    // The chords of a hard shadow's arcs are within 1e-5 of its extent: a triangle thinner than that may lie beside them.
-    let thinnest = if shadow.radius() == 0.0 {
-        4e-5 * shadow.bounds().map_or(0.0, extent)
-    } else {
-        0.0
-    };
+    // A hard shadow's mesh may reach beyond it by what chords are off arcs, 1e-5 of its extent, and its vertices off what they
+    // stand for. So far off there is something of a shadow that is softer by twice that.
+    let soft = (shadow.radius() == 0.0).then(|| {
+        let reach = 2e-5 * shadow.bounds().map_or(0.0, extent) + 1e-5;
+        self::shadow(&[shape], reach as f32).expect("as the hard one")
+    });
     for corners in mesh.triangles().take(50) {
-        if height(corners.map(|corner| corner.position.map(f64::from))) < thinnest {
-            continue;
-        }
         let middle = [0, 1].map(|axis| {
             corners
                 .iter()
@@ -419,7 +416,12 @@ pub(crate) fn mesh(data: &[u8]) {
             .map(|corner| f64::from(corner.density))
             .sum::<f64>()
             / 3.0;
-        if mesh.is_complete() {
+        if let Some(soft) = &soft {
+            assert!(
+                density > 0.999 && soft.density_at(middle) > 1e-12,
+                "{density} at {middle:?}"
+            );
+        } else if mesh.is_complete() {
             let error = (shadow.density_at(middle) - density).abs() * 255.0;
             // Triangles are sampled, and their vertices rounded.
             assert!(
@@ -434,17 +436,6 @@ pub(crate) fn mesh(data: &[u8]) {
 fn extent(bounds: Bounds) -> f64 {
     let side = |axis: usize| f64::from(bounds.max[axis] - bounds.min[axis]);
     side(0).max(side(1))
-}
-
-/// A triangle's height on its longest side.
-fn height(corners: [[f64; 2]; 3]) -> f64 {
-    let way = |from: usize, to: usize| [0, 1].map(|axis| corners[to][axis] - corners[from][axis]);
-    let (a, b, c) = (way(0, 1), way(0, 2), way(1, 2));
-    let longest = [a, b, c]
-        .map(|[x, y]| x.hypot(y))
-        .into_iter()
-        .fold(0.0, f64::max);
-    (a[0] * b[1] - a[1] * b[0]).abs() / longest.max(f64::MIN_POSITIVE)
 }
 
 fn draw(scene: &Scene) -> Pixmap {

@@ -303,9 +303,18 @@ impl Segment {
     pub(crate) fn flatten(&self, from: DVec2, flatness: f64, out: &mut Vec<DVec2>) {
         let first = out.len();
         let to = self.end();
-        let backwards = (to.x, to.y) < (from.x, from.y);
+        let backwards = self.is_backwards(from);
         match *self {
             Self::Line(_) => {}
+            // Out and back on a line: every point but the farthest would leave a sliver between its two ways.
+            Self::Quad(control, _) if from == to => {
+                out.extend([from.lerp(control, 0.5), to]);
+                return;
+            }
+            Self::Cubic(c1, c2, _) if from == to && c1 == c2 => {
+                out.extend([from.lerp(c1, 0.75), to]);
+                return;
+            }
             Self::Quad(control, _) => {
                 let (a, b) = if backwards { (to, from) } else { (from, to) };
                 let curve = QuadraticBezierSegment {
@@ -348,6 +357,17 @@ impl Segment {
         }
         out.push(to);
     }
+
+    /// Whether the segment is the one of the two ways along its curve that is cut from its end.
+    fn is_backwards(&self, from: DVec2) -> bool {
+        let to = self.end();
+        let (leaving, arriving) = match *self {
+            // Only a loop needs more than its ends to tell.
+            Self::Cubic(c1, c2, _) if from == to => (c1, c2),
+            _ => (from, to),
+        };
+        (arriving.x, arriving.y) < (leaving.x, leaving.y)
+    }
 }
 
 fn lyon_point(p: DVec2) -> Point<f64> {
@@ -384,6 +404,11 @@ impl EllipseArc {
         if radii.x == 0.0 || radii.y == 0.0 || from == to {
             return None;
         }
+        if !positive {
+            // The other way round the same arc: the same numbers.
+            let arc = Self::through(to, radii, rotation, large, true, from);
+            return arc.map(|arc| arc.reversed(to));
+        }
         let (sin_rotation, cos_rotation) = (sin(rotation), cos(rotation));
         let axis = DVec2::new(cos_rotation, sin_rotation);
         // The half chord in the ellipse's own frame, in units of its half axes.
@@ -392,16 +417,15 @@ impl EllipseArc {
         let grow = h.length().max(1.0);
         let (radii, h) = (radii * grow, h / grow);
         let away = sqrt((1.0 / h.length_squared() - 1.0).max(0.0));
-        let side = if large == positive { -1.0 } else { 1.0 };
+        let side = if large { -1.0 } else { 1.0 };
         let c = side * away * DVec2::new(h.y, -h.x);
         let (u, v) = (axis * radii.x, axis.perp() * radii.y);
         let (a, b) = (h - c, -h - c);
-        let start = atan2(a.y, a.x);
-        let mut sweep = atan2(b.y, b.x) - start;
-        if positive && sweep < 0.0 {
-            sweep += TAU;
-        } else if !positive && sweep > 0.0 {
-            sweep -= TAU;
+        let angle = |v: DVec2| on_steps(atan2(v.y, v.x));
+        let start = angle(a);
+        let mut sweep = angle(b) - start;
+        if sweep < 0.0 || (large && sweep == 0.0) {
+            sweep += on_steps(TAU);
         }
         Some(Self {
             center: (from + to) / 2.0 + u * c.x + v * c.y,
@@ -413,20 +437,38 @@ impl EllipseArc {
         })
     }
 
+    /// The same from its end to `to`, where it began.
+    pub(crate) fn reversed(&self, to: DVec2) -> Self {
+        Self {
+            start: self.start + self.sweep,
+            sweep: -self.sweep,
+            to,
+            ..*self
+        }
+    }
+
     /// Pushes the vertices between the arc's ends.
     fn flatten(&self, flatness: f64, out: &mut Vec<DVec2>) {
         let longest = sqrt(self.u.length_squared() + self.v.length_squared());
         let count = arc_steps(longest, self.sweep, flatness);
         for i in 1..count {
             // From the nearer end: the same angles in both directions.
+            let part = |steps: u32| self.sweep * (f64::from(steps) / f64::from(count));
             let angle = if 2 * i <= count {
-                self.start + self.sweep * f64::from(i) / f64::from(count)
+                self.start + part(i)
             } else {
-                (self.start + self.sweep) - self.sweep * f64::from(count - i) / f64::from(count)
+                (self.start + self.sweep) - part(count - i)
             };
             out.push(self.center + self.u * cos(angle) + self.v * sin(angle));
         }
     }
+}
+
+/// An angle (radians) on steps of 2^-48: sums and differences of such angles are exact, so that an arc and its reverse have
+/// the same.
+fn on_steps(angle: f64) -> f64 {
+    const STEPS: f64 = (1_u64 << 48) as f64;
+    (angle * STEPS).round() / STEPS
 }
 
 /// Into how many equal steps an arc of `sweep` radians is cut, so that its chords stay within `flatness` of it: a chord
@@ -506,6 +548,57 @@ mod tests {
         let mut reversed = back.contours[0].flatten(1e-3);
         reversed.reverse();
         assert_eq!(forth.contours[0].flatten(1e-3), reversed);
+    }
+
+    #[test]
+    fn arcs_and_loops_are_flattened_alike_both_ways() {
+        let from = [0.1, 0.2];
+        let mut ways: Vec<[Path; 2]> = Vec::new();
+        for (large, positive) in [(false, false), (false, true), (true, false), (true, true)] {
+            let arc = |from, positive, to| {
+                let mut path = Path::new();
+                path.move_to(from)
+                    .arc_to([5.1, 3.3], 0.5, large, positive, to);
+                path
+            };
+            for to in [[4.3, 1.7], [30.0, -7.0], [-2.0, 3.0]] {
+                ways.push([arc(from, positive, to), arc(to, !positive, from)]);
+            }
+        }
+        let cubic = |a, b| {
+            let mut path = Path::new();
+            path.move_to(from).cubic_to(a, b, from);
+            path
+        };
+        ways.push([cubic([9.0, 4.3], [2.0, 7.1]), cubic([2.0, 7.1], [9.0, 4.3])]);
+        for [forth, back] in ways {
+            for flatness in [1e-5, 1e-3, 1.0] {
+                let forth = forth.contours[0].flatten(flatness);
+                let mut back = back.contours[0].flatten(flatness);
+                // A loop begins where it ends.
+                let closed = usize::from(forth[0] == back[0]);
+                back[closed..].reverse();
+                assert_eq!(forth, back);
+            }
+        }
+    }
+
+    #[test]
+    fn curves_that_come_back_on_a_line_enclose_nothing() {
+        let mut path = Path::new();
+        path.move_to([5.25, 14.25])
+            .quad_to([19.25, 16.0], [5.25, 14.25])
+            .cubic_to([1.25, 2.25], [1.25, 2.25], [5.25, 14.25]);
+        let at = |x, y| DVec2::new(x, y);
+        assert_eq!(
+            path.contours[0].flatten(1e-3),
+            [
+                at(5.25, 14.25),
+                at(12.25, 15.125),
+                at(5.25, 14.25),
+                at(2.25, 5.25)
+            ]
+        );
     }
 
     #[test]

@@ -89,6 +89,9 @@ fn densities_are_fractions_and_as_right_as_they_are_to_be() {
 }
 
 /// The sum of densities is the outline's area, whatever the penumbra.
+///
+/// Where pixels are samples, the sum over one lattice is off by what an edge's profile has at the lattice's frequency, up to
+/// 0.25 level about r = 2 px: it is taken over four lattices half a pixel apart, which leave no more than `exact` may be wrong.
 #[test]
 fn mass_is_the_area_of_the_outline() {
     let (mut scratch, mut summary) = (Scratch::new(), Summary::default());
@@ -101,17 +104,24 @@ fn mass_is_the_area_of_the_outline() {
         };
         let first = bounds.min.map(|v| v.floor() - 1.0);
         let size = [0, 1].map(|axis: usize| (bounds.max[axis] - first[axis]).ceil() as u32 + 1);
-        let grid = Grid::new(first, size, 1.0).unwrap();
         let mut sum = |radius: f32, method| {
             let shadow = cast(directional(radius), &shapes);
-            let drawn = densities(&shadow, &grid, &by(method), &mut scratch);
+            let lattices = [[0.0, 0.0], [0.5, 0.0], [0.0, 0.5], [0.5, 0.5]];
+            let drawn: Vec<f32> = lattices
+                .iter()
+                .flat_map(|phase| {
+                    let first = [0, 1].map(|axis| first[axis] + phase[axis]);
+                    let grid = Grid::new(first, size, 1.0).unwrap();
+                    densities(&shadow, &grid, &by(method), &mut scratch)
+                })
+                .collect();
             let shaded = drawn.iter().filter(|density| **density > 0.0).count();
             let mass: f64 = drawn.iter().copied().map(f64::from).sum();
             (mass, shaded)
         };
         let (area, _) = sum(0.0, Some(Method::Exact));
         let label = format!("seed {seed}, {name} at r {radius} px");
-        for (what, method, allowed) in [("auto", None, 1.0), ("exact", Some(Method::Exact), 0.15)] {
+        for (what, method, allowed) in [("auto", None, 1.0), ("exact", Some(Method::Exact), 0.12)] {
             let (mass, shaded) = sum(radius, method);
             let error = (mass - area).abs() * 255.0 / (shaded.max(1) as f64);
             summary.add(format!("mass, {what}"), error as f32, allowed, &label);
@@ -126,36 +136,48 @@ fn mass_is_the_area_of_the_outline() {
 fn direction_and_start_of_a_path_do_not_matter() {
     let mut scratch = Scratch::new();
     for (seed, mut random) in seeds("direction and start", 120) {
-        let straight = random.chance(0.5);
-        let drawn = Drawn::random(&mut random, 24.0, !straight);
-        let Some(shape) = drawn.shape() else {
-            continue;
-        };
-        let radius = radius(&mut random, &[1.0, 6.0, 12.0]).min(30.0);
-        let shadow = cast(directional(radius), &[shape]);
-        let point = point(&mut random, 24.0);
-        let method = METHODS[random.below(4)];
-        let grid = Grid::new([-3.0, random.below(24) as f32], [30, 2], 1.0).unwrap();
-        let pixels = densities(&shadow, &grid, &by(method), &mut scratch);
-        let start = 1 + random.below(7);
-        for other in [
-            drawn.reversed(),
-            drawn.started_at(start),
-            drawn.reversed().started_at(start),
-        ] {
-            let other = cast(directional(radius), &[other.shape().unwrap()]);
-            let label = format!("seed {seed}, {method:?}, r {radius}: {drawn:?}");
-            let (here, there) = (shadow.density_at(point), other.density_at(point));
-            let others = densities(&other, &grid, &by(method), &mut scratch);
-            let worst = common::worst_of(&pixels, &others);
-            if straight {
-                assert_eq!(here.to_bits(), there.to_bits(), "{here} {there}: {label}");
-                assert!(bits(&pixels) == bits(&others), "{worst} levels: {label}");
-            } else {
-                // The points of a curve are computed from where it begins.
-                assert!((here - there).abs() < 1e-12, "{here} {there}: {label}");
-                assert!(worst < 2e-3, "{worst} levels: {label}");
-            }
+        is_the_same_any_way(seed, &mut random, &mut scratch);
+    }
+}
+
+/// A curve out and back on a line once left slivers, other ones from its end, and one of them a vertex on a side that it crosses:
+/// the two parts of the side were drawn otherwise than the whole.
+#[test]
+fn a_curve_that_comes_back_on_itself_leaves_nothing() {
+    let seed = 6_003_605;
+    is_the_same_any_way(seed, &mut Random::new(!(seed as u64)), &mut Scratch::new());
+}
+
+fn is_the_same_any_way(seed: usize, random: &mut Random, scratch: &mut Scratch) {
+    let straight = random.chance(0.5);
+    let drawn = Drawn::random(random, 24.0, !straight);
+    let Some(shape) = drawn.shape() else {
+        return;
+    };
+    let radius = radius(random, &[1.0, 6.0, 12.0]).min(30.0);
+    let shadow = cast(directional(radius), &[shape]);
+    let point = point(random, 24.0);
+    let method = METHODS[random.below(4)];
+    let grid = Grid::new([-3.0, random.below(24) as f32], [30, 2], 1.0).unwrap();
+    let pixels = densities(&shadow, &grid, &by(method), scratch);
+    let start = 1 + random.below(7);
+    for other in [
+        drawn.reversed(),
+        drawn.started_at(start),
+        drawn.reversed().started_at(start),
+    ] {
+        let other = cast(directional(radius), &[other.shape().unwrap()]);
+        let label = format!("seed {seed}, {method:?}, r {radius}: {drawn:?}");
+        let (here, there) = (shadow.density_at(point), other.density_at(point));
+        let others = densities(&other, &grid, &by(method), scratch);
+        let worst = common::worst_of(&pixels, &others);
+        if straight {
+            assert_eq!(here.to_bits(), there.to_bits(), "{here} {there}: {label}");
+            assert!(bits(&pixels) == bits(&others), "{worst} levels: {label}");
+        } else {
+            // The points of a curve are computed from where it begins.
+            assert!((here - there).abs() < 1e-12, "{here} {there}: {label}");
+            assert!(worst < 2e-3, "{worst} levels: {label}");
         }
     }
 }

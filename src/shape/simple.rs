@@ -12,7 +12,7 @@ use core::ops::Range;
 
 use glam::DVec2;
 
-use crate::path::{Contour, Curve, EllipseArc, FillRule, Part, Segment};
+use crate::path::{Contour, Curve, FillRule, Part, Segment};
 
 /// More pieces than this are not looked through.
 const MOST_PIECES: usize = 20_000;
@@ -97,12 +97,7 @@ fn reversed(contour: &Contour) -> Contour {
             Segment::Line(_) => Segment::Line(to),
             Segment::Quad(a, _) => Segment::Quad(a, to),
             Segment::Cubic(a, b, _) => Segment::Cubic(b, a, to),
-            Segment::Arc(arc) => Segment::Arc(EllipseArc {
-                start: arc.start + arc.sweep,
-                sweep: -arc.sweep,
-                to,
-                ..arc
-            }),
+            Segment::Arc(arc) => Segment::Arc(arc.reversed(to)),
         }
     };
     let mut segments: Vec<Segment> = contour.segments.iter().map(turned).collect();
