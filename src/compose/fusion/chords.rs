@@ -360,9 +360,9 @@ impl Part<'_> {
         let reach = self.reach();
         let (left, right) = (self.at.x - reach, self.at.x + self.width + reach);
         let height = |y: f64| (y - self.at.y) / self.radius;
-        for turn in &self.of_loop.turns {
-            let v = height(turn.y);
-            if v.abs() < 1.0 && turn.x >= left && turn.x <= right {
+        for [from, to] in &self.of_loop.turns {
+            let v = height(from.y);
+            if v.abs() < 1.0 && to.x >= left && from.x <= right {
                 out.push(asin(v));
             }
         }

@@ -23,8 +23,9 @@ pub(super) struct Loop {
     pub(super) edges: Vec<[DVec2; 2]>,
     /// All lines, each with the area on its left where y points up.
     lines: Vec<[DVec2; 2]>,
-    /// Where the outline turns up or down: there the hidden part of a chord begins or ends at once.
-    pub(super) turns: Vec<DVec2>,
+    /// Where the outline turns up or down, and its level lines, from left to right: there the hidden part of a chord begins or
+    /// ends at once.
+    pub(super) turns: Vec<[DVec2; 2]>,
 }
 
 impl Occluder {
@@ -126,14 +127,16 @@ impl Loop {
         for (index, &from) in points.iter().enumerate() {
             let to = points[(index + 1) % count];
             let before = points[(index + count - 1) % count];
-            if (from.y - before.y) * (to.y - from.y) <= 0.0 {
-                of_loop.turns.push(from);
+            if (from.y - before.y) * (to.y - from.y) < 0.0 {
+                of_loop.turns.push([from; 2]);
             }
             of_loop.lines.push([from, to]);
             if from.y < to.y {
                 of_loop.edges.push([from, to]);
             } else if to.y < from.y {
                 of_loop.edges.push([to, from]);
+            } else {
+                of_loop.turns.push([from.min(to), from.max(to)]);
             }
         }
         Some(of_loop)
