@@ -23,7 +23,7 @@ const GOLDEN: [(&str, u64); 11] = [
     ("dithered paint", 0x4d39_b364_e45e_c743),
     ("masks", 0xfad7_7c0a_a8c7_f732),
     ("meshes", 0x2f3b_27c5_90eb_0cb6),
-    ("pictures", 0x1360_7cbb_32c8_093b),
+    ("pictures", 0x529b_5ef8_1cbf_1f8b),
     ("svg", 0x8126_8e4b_69f9_6c3b),
 ];
 
