@@ -14,8 +14,8 @@ use penumbral::{
     DensityMap, FillRule, Grid, Light, PixelOptions, Scene, Scratch, Shape, Tolerance,
 };
 
-fn truth_scenes() -> Vec<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/truth");
+fn truth_scenes(folder: &str) -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
     let entries = fs::read_dir(folder)
         .unwrap()
         .map(|entry| entry.unwrap().path());
@@ -55,7 +55,7 @@ fn allowed(name: &str, least_radius: f64) -> f64 {
 
 #[test]
 fn maps_of_an_independent_closed_form_agree() {
-    let scenes = truth_scenes();
+    let scenes = truth_scenes("fixtures/truth");
     assert_eq!(scenes.len(), 20);
     let (mut map, mut scratch) = (DensityMap::default(), Scratch::new());
     for path in scenes {
@@ -99,6 +99,35 @@ fn maps_of_an_independent_closed_form_agree() {
                 _ => 1.0,
             };
             assert!(worst <= allowed, "{name}, {label}: {worst} levels");
+        }
+    }
+}
+
+#[test]
+fn pairs_hide_what_a_polygon_boolean_says() {
+    let scenes = truth_scenes("fixtures/truth/pairs");
+    assert_eq!(scenes.len(), 24);
+    let (mut map, mut scratch) = (DensityMap::default(), Scratch::new());
+    for path in scenes {
+        let scene = Scene::from_json(&fs::read_to_string(&path).unwrap()).unwrap();
+        let truth = read_map(&path.with_extension("png"));
+        for method in [Some(Method::Exact), None] {
+            let options = PixelOptions {
+                method,
+                ..PixelOptions::default()
+            };
+            let shadows = scene.ground_shadows().unwrap();
+            shadows.draw(&mut map, &options, &mut scratch);
+            assert_eq!(map.densities().len(), truth.len());
+            let error = |(got, truth): (&f32, &f64)| (f64::from(*got) - truth).abs() * 255.0;
+            let worst = map.densities().iter().zip(&truth).map(error);
+            let worst = worst.fold(0.0, f64::max);
+            println!("{:?} {method:?}: {worst:.3} levels", path.file_stem());
+            assert!(
+                worst <= 1.0,
+                "{}, {method:?}: {worst} levels",
+                path.display()
+            );
         }
     }
 }

@@ -6,8 +6,10 @@
 //! the union's exact area, however many casters meet.
 
 mod chords;
+mod company;
 mod meet;
 mod member;
+mod occluder;
 mod pixel;
 
 use core::ops::Range;
@@ -15,7 +17,7 @@ use core::ops::Range;
 use fearless_simd::Level;
 use glam::DVec2;
 
-use self::meet::Meet;
+use self::meet::{Companies, Meet};
 use self::member::Member;
 use self::pixel::{By, Pixels};
 use super::caster::{AnyShadow, Cast};
@@ -113,11 +115,17 @@ impl Fusion {
         let scale = grid.pixels_per_unit();
         let members = group.iter().filter_map(|cast| Member::new(cast, scale));
         let members: Vec<Member> = members.collect();
+        let mut companies = Companies::new();
         for (row, y) in rows.enumerate() {
             let start = grid.corner() + DVec2::new(f64::from(columns.start), f64::from(y));
             let at = row * width..(row + 1) * width;
-            self.meet
-                .mend(&members, start, &mut self.pixels, at.clone());
+            self.meet.mend(
+                &members,
+                &mut companies,
+                start,
+                &mut self.pixels,
+                at.clone(),
+            );
             let held = self.pixels.held(at);
             let is_held = |held: &f32| *held != 0.0;
             let ends = (

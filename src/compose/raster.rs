@@ -10,6 +10,7 @@ use tiny_skia::{ColorU8, Pixmap};
 
 use self::mix::Mixer;
 use self::texture::Texture;
+use super::caster::Cast;
 use super::fusion::{self, groups};
 use super::{Receiver, Stage};
 use crate::density::{self, Each, PixelOptions};
@@ -85,6 +86,10 @@ struct Job<'a> {
     stage: Stage<'a>,
     grid: Grid,
     mixer: Mixer,
+    /// What falls on the ground, which all bands of rows show: strengths and casts.
+    on_ground: Vec<(f32, Vec<Cast>)>,
+    /// The surfaces' images in the order that they are drawn, as far as these are seen.
+    images: Vec<Option<Pixmap>>,
     /// The surfaces' finishes in the order that they are drawn.
     #[cfg(feature = "finish")]
     finishes: Vec<Option<Finished<'a>>>,
@@ -233,6 +238,8 @@ impl Renderer {
             scene,
             #[cfg(feature = "finish")]
             finishes: finishes(scene, &stage)?,
+            on_ground: stage.casts(&Receiver::ground(scene))?,
+            images: images(scene, &stage)?,
             stage,
             grid,
             mixer: Mixer::new(&scene.tone()),
@@ -265,7 +272,8 @@ impl Renderer {
         }
         progress(1, layers)?;
         for (index, &surface) in stage.order.iter().enumerate() {
-            let layer = layer(scene, surface, index as u32 + 1, window)?;
+            let image = job.images[index].as_ref();
+            let layer = layer(scene, surface, image, index as u32 + 1, window)?;
             #[cfg_attr(
                 not(feature = "finish"),
                 expect(unused_mut, reason = "a finish is found late")
@@ -399,13 +407,20 @@ impl Renderer {
             hidden: Some(&hidden),
             ..PixelOptions::default()
         };
-        for (strength, casts) in job.stage.casts(&layer.receiver)? {
+        let of_surface;
+        let casts = if layer.rank == 0 {
+            &job.on_ground
+        } else {
+            of_surface = job.stage.casts(&layer.receiver)?;
+            &of_surface
+        };
+        for (strength, casts) in casts {
             let mut sink = Each {
                 pixels: &mut self.passed,
                 stride: layer.grid.width() as usize,
                 put: |passed: &mut f32, held: f32| *passed *= 1.0 - strength * held,
             };
-            for group in groups(&casts, job.scene.overlap(), layer.grid.pixels_per_unit()) {
+            for group in groups(casts, job.scene.overlap(), layer.grid.pixels_per_unit()) {
                 fusion::draw(&group, &layer.grid, &options, &mut self.scratch, &mut sink);
             }
         }
@@ -425,6 +440,18 @@ impl Renderer {
     }
 }
 
+/// The images of surfaces that are seen, premultiplied.
+fn images(scene: &Scene, stage: &Stage<'_>) -> Result<Vec<Option<Pixmap>>> {
+    let image = |surface: &&Surface| match surface.form() {
+        Form::Image(image, _) if surface.weight() > 0.0 => {
+            let is_seen = Receiver::surface(scene, surface).is_some();
+            is_seen.then(|| texture::premultiplied(image)).transpose()
+        }
+        _ => Ok(None),
+    };
+    stage.order.iter().map(image).collect()
+}
+
 #[cfg(feature = "finish")]
 fn finishes<'a>(scene: &'a Scene, stage: &Stage<'a>) -> Result<Vec<Option<Finished<'a>>>> {
     let finished = stage.order.iter().map(|&surface| {
@@ -439,7 +466,13 @@ fn finishes<'a>(scene: &'a Scene, stage: &Stage<'a>) -> Result<Vec<Option<Finish
     finished.collect()
 }
 
-fn layer(scene: &Scene, surface: &Surface, rank: u32, window: &Window) -> Result<Option<Layer>> {
+fn layer(
+    scene: &Scene,
+    surface: &Surface,
+    image: Option<&Pixmap>,
+    rank: u32,
+    window: &Window,
+) -> Result<Option<Layer>> {
     let Some(receiver) = Receiver::surface(scene, surface).filter(|_| surface.weight() > 0.0)
     else {
         return Ok(None);
@@ -459,9 +492,9 @@ fn layer(scene: &Scene, surface: &Surface, rank: u32, window: &Window) -> Result
     }
     let first = [columns.start, rows.start];
     let grid = window.grid.window(first, [columns.end, rows.end]);
-    let fill = match surface.form() {
-        Form::Image(image, place) => Fill::Texture(Texture::new(image, place, &grid)?),
-        Form::Level | Form::Posed(_) => Fill::Color(surface.fill()),
+    let fill = match (surface.form(), image) {
+        (Form::Image(_, place), Some(image)) => Fill::Texture(Texture::new(image, place, &grid)?),
+        _ => Fill::Color(surface.fill()),
     };
     Ok(Some(Layer {
         receiver,

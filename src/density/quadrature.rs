@@ -43,14 +43,19 @@ fn gauss(half: &'static [(f64, f64)]) -> impl Iterator<Item = (f64, f64)> + Clon
 /// smaller the penumbra radius in pixels. On edges, corners, slivers and dots they are within 0.04, 0.11 and 0.12 level
 /// of finer rules.
 pub(crate) fn square(radius: f64) -> impl Iterator<Item = (DVec2, f64)> {
-    let half: &'static [(f64, f64)] = if radius >= 2.0 {
+    side(radius)
+        .flat_map(move |(y, wy)| side(radius).map(move |(x, wx)| (DVec2::new(x, y), wx * wy)))
+}
+
+/// The points and weights of [`square`] along one of its sides.
+pub(crate) fn side(radius: f64) -> impl Iterator<Item = (f64, f64)> + Clone {
+    gauss(if radius >= 2.0 {
         &GAUSS_4
     } else if radius >= 1.0 {
         &GAUSS_8
     } else {
         &GAUSS_12
-    };
-    gauss(half).flat_map(move |(y, wy)| gauss(half).map(move |(x, wx)| (DVec2::new(x, y), wx * wy)))
+    })
 }
 
 /// 8 x 24 points and weights for an average over the disc of radius 1 about the origin: Gauss points in the square of the

@@ -2,183 +2,76 @@
 //!
 //! From a point p a caster of penumbra radius r hides of the disc what its outline covers in the unit of r about p. So a
 //! level chord of the disc at height v lies on the line y = p.y + r v of the caster's receiver, and is hidden between the
-//! outline's crossings with that line. Crossings of a row of pixels are found once; along the row only their distances change.
+//! outline's crossings with that line. Crossings for some points of a row are found once; from point to point only their
+//! distances change.
 
 use core::ops::Range;
 
 use fearless_simd::{Level, Simd, SimdBase, dispatch, f32x16};
 use glam::DVec2;
-use libm::{asin, floor};
+use libm::{asin, sqrt};
 
-use crate::density::lanes::{LANES, lanes};
+use super::occluder::Loop;
+use crate::density::lanes::LANES;
 use crate::density::quadrature;
-use crate::tilted::Circle;
-
-/// So many pixels of a row are worked on together.
-pub(super) const BLOCK: usize = LANES;
-
-/// Where the block of a point begins that is so far behind the origin, and the point's number in it. Blocks do not depend on
-/// what is asked for: nor do the bits of what is found.
-pub(super) fn block_of(offset: f64) -> (f64, usize) {
-    let lane = (floor(offset) as i64).rem_euclid(BLOCK as i64);
-    (offset - lane as f64, lane as usize)
-}
 
 /// Into so many equal angles the disc's height is cut, and again wherever an outline has a top, a bottom or a level edge.
 const PIECES: u32 = 12;
 
-/// One caster as its chords need it. Each of its loops has an origin of its own, a whole pixel: what a pixel is given depends
-/// neither on what else there is nor on the grid that shows it.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Occluder {
-    /// The penumbra radius in pixels.
+/// Along an outline that runs by more than this for each step up, chords change faster than pieces tell: there the height is cut
+/// into steps of `SLANTED_STEP` over the square root of that slope. Cuts are where a hidden part begins or ends with a slope
+/// that two chords a piece do not see, an error of about 4 slope h² levels for a piece of height h.
+const SLANTED: f64 = 1.0;
+const SLANTED_STEP: f64 = 0.2;
+
+/// A loop of a caster near some points of a row.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Part<'a> {
+    /// The caster's number among those that are told apart; parts of one follow each other.
+    pub(super) caster: usize,
+    pub(super) of_loop: &'a Loop,
+    /// The caster's penumbra radius in pixels.
     pub(super) radius: f64,
-    loops: Vec<Loop>,
+    /// The side of the square about its middle that a pixel sees the caster through, in pixels.
+    pub(super) side: f64,
+    /// The first pixel's middle, as far above or below as the row of points is, in pixels from the loop's base; and how far to
+    /// the right of it the last pixel is.
+    pub(super) at: DVec2,
+    pub(super) width: f64,
 }
 
-#[derive(Debug, Clone)]
-struct Loop {
-    /// In pixels from the scene's origin; all else from here.
-    base: DVec2,
-    min: DVec2,
-    max: DVec2,
-    /// The outline's lines but the level ones, each from its lower y to its higher one.
-    edges: Vec<[DVec2; 2]>,
-    /// All lines, each with the area on its left where y points up.
-    lines: Vec<[DVec2; 2]>,
-    /// Where the outline turns up or down: there the hidden part of a chord begins or ends at once.
-    turns: Vec<f64>,
+/// A number for each of the points that are worked on together.
+pub(super) type Lane = [f32; LANES];
+
+/// Points in a row of pixels.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Points {
+    /// How far their pixels are behind the first one.
+    pub(super) pixels: Lane,
+    /// How far they are from their pixels' middles, for a square of side 1.
+    pub(super) offsets: Lane,
 }
 
-impl Occluder {
-    /// Of polygons in pixels from the scene's origin, of which there are `scale` a unit of theirs.
-    pub(super) fn new(polygons: &[Vec<DVec2>], scale: f64, radius: f64) -> Self {
-        Self {
-            radius,
-            loops: polygons
-                .iter()
-                .filter_map(|polygon| Loop::new(polygon, scale))
-                .collect(),
-        }
-    }
-
-    /// A whole pixel of its own, from the scene's origin.
-    pub(super) fn origin(&self) -> DVec2 {
-        self.loops.first().map_or(DVec2::ZERO, |first| first.base)
-    }
-
-    /// Puts the lines that discs about points at height `y` may meet into `out`, in pixels from the scene's origin.
-    pub(super) fn lines_near(&self, y: f64, out: &mut Vec<[DVec2; 2]>) {
-        for of_loop in &self.loops {
-            let y = y - of_loop.base.y;
-            let (low, high) = (y - self.radius, y + self.radius);
-            if of_loop.min.y <= high && of_loop.max.y >= low {
-                let meets = |line: &&[DVec2; 2]| {
-                    line[0].y.min(line[1].y) <= high && line[0].y.max(line[1].y) >= low
-                };
-                let near = of_loop.lines.iter().filter(meets);
-                out.extend(near.map(|line| line.map(|point| point + of_loop.base)));
-            }
-        }
-    }
-
-    /// The direction of the outline where the disc about a point meets it in a single line from one side to the other, or none;
-    /// and up to which x to the right of the point that stays so.
-    pub(super) fn single_line(&self, lines: &[[DVec2; 2]], at: DVec2) -> (Option<DVec2>, f64) {
-        let reach = self.radius;
-        let (mut count, mut single, mut until) = (0, None, f64::MAX);
-        for &[from, to] in lines {
-            let (low, high) = (from.min(to), from.max(to));
-            if at.x > high.x + reach {
-                continue;
-            }
-            if at.x < low.x - reach {
-                until = until.min(low.x - reach);
-                continue;
-            }
-            until = until.min(high.x + reach);
-            count += 1;
-            let spans_rows = low.y <= at.y - reach && high.y >= at.y + reach;
-            let spans_columns = at.x >= low.x + reach && at.x <= high.x - reach;
-            if spans_columns {
-                until = until.min(high.x - reach);
-            } else if at.x < low.x + reach {
-                until = until.min(low.x + reach);
-            }
-            if spans_rows || spans_columns {
-                single = Some(to - from);
-            }
-        }
-        (single.filter(|_| count == 1), until)
-    }
-
-    /// A caster of many radii as one point sees it, on the light's unit disc.
-    pub(super) fn seen_from(point: DVec2, loops: &[Vec<Circle>]) -> Self {
-        let polygons: Vec<Vec<DVec2>> = loops
-            .iter()
-            .map(|circles| {
-                circles
-                    .iter()
-                    .map(|circle| circle.seen_from(point))
-                    .collect()
-            })
-            .collect();
-        Self::new(&polygons, 1.0, 1.0)
-    }
-}
-
-impl Loop {
-    fn new(polygon: &[DVec2], scale: f64) -> Option<Self> {
-        let min = polygon.iter().copied().reduce(DVec2::min)?;
-        let base = (min * scale).floor();
-        let points: Vec<DVec2> = polygon.iter().map(|&point| point * scale - base).collect();
-        let mut of_loop = Self {
-            base,
-            min: DVec2::ZERO,
-            max: DVec2::ZERO,
-            edges: Vec::new(),
-            lines: Vec::new(),
-            turns: Vec::new(),
-        };
-        of_loop.min = points.iter().copied().fold(DVec2::MAX, DVec2::min);
-        of_loop.max = points.iter().copied().fold(DVec2::MIN, DVec2::max);
-        let count = points.len();
-        for (index, &from) in points.iter().enumerate() {
-            let to = points[(index + 1) % count];
-            let before = points[(index + count - 1) % count];
-            if (from.y - before.y) * (to.y - from.y) <= 0.0 {
-                of_loop.turns.push(from.y);
-            }
-            of_loop.lines.push([from, to]);
-            if from.y < to.y {
-                of_loop.edges.push([from, to]);
-            } else if to.y < from.y {
-                of_loop.edges.push([to, from]);
-            }
-        }
-        of_loop.turns.sort_by(f64::total_cmp);
-        of_loop.turns.dedup();
-        Some(of_loop)
-    }
-}
-
-/// The chords of one row of points, and where casters hide them.
+/// The chords of some points of a row, and where casters hide them.
 #[derive(Debug, Default)]
 pub(super) struct Chords {
-    /// The nodes of each piece that no turn cuts.
+    /// The nodes of each piece that nothing cuts.
     pieces: Vec<[Node; 2]>,
-    /// The angles at which outlines turn.
-    turns: Vec<f64>,
+    /// The angles at which pieces are cut.
+    cuts: Vec<f64>,
     nodes: Vec<Node>,
     /// A list for each caster.
     hidden: Vec<Spans>,
-    /// Of the caster that is gone through: edges that the row's discs may meet, with where the first point is for them and the
+    /// Of the caster that is gone through: edges that the points' discs may meet, with where the origin is for them and the
     /// chords that they cross; and up to where each chord's crossings are known.
     near: Vec<(DVec2, [DVec2; 2], Range<usize>)>,
     filled: Vec<usize>,
     /// Memory to walk along one chord.
     ends: Vec<(f32, usize, bool)>,
     inside: Vec<f32>,
+    /// Memory to unite spans: where they begin and end, each list in order.
+    begins: Vec<Lane>,
+    stops: Vec<Lane>,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -193,38 +86,43 @@ struct Node {
 #[derive(Debug, Default)]
 struct Spans {
     /// Where they begin and end, in pixels from the origin, from left to right, one chord after the other.
-    crossings: Vec<f64>,
-    /// Where each chord's crossings begin, and where the last one's end.
+    crossings: Vec<f32>,
+    /// Where each chord's crossings begin, and where the last one's end. None if the caster has no part near the points.
     starts: Vec<usize>,
-    /// 1 over the penumbra radius in pixels.
+    /// 1 over the penumbra radius in pixels, and the side of a pixel's square.
     factor: f32,
+    side: f32,
 }
 
 impl Chords {
-    /// The chords of a row of points; each caster sees the row's origin at a place of its own.
-    pub(super) fn place<'a>(
-        &mut self,
-        casters: impl ExactSizeIterator<Item = (&'a Occluder, DVec2)> + Clone,
-    ) {
-        self.find_nodes(casters.clone());
-        self.hidden.resize_with(casters.len(), Spans::default);
-        for ((caster, at), hidden) in casters.zip(&mut self.hidden) {
-            hidden.factor = (1.0 / caster.radius) as f32;
-            // How many crossings each chord has, then where they begin.
+    /// The chords of some points of a row, for so many casters, of which these are the parts near to them.
+    pub(super) fn place(&mut self, casters: usize, parts: &[Part<'_>]) {
+        self.find_nodes(parts);
+        self.hidden.resize_with(casters, Spans::default);
+        for hidden in &mut self.hidden {
             hidden.starts.clear();
+            hidden.crossings.clear();
+        }
+        for parts in parts.chunk_by(|a, b| a.caster == b.caster) {
+            let Part {
+                caster,
+                radius,
+                side,
+                ..
+            } = parts[0];
+            let hidden = &mut self.hidden[caster];
+            hidden.factor = (1.0 / radius) as f32;
+            hidden.side = side as f32;
+            // How many crossings each chord has, then where they begin.
             hidden.starts.resize(self.nodes.len() + 1, 0);
             self.near.clear();
-            for of_loop in &caster.loops {
-                let at = at - of_loop.base;
-                let (low, high) = (at.y - caster.radius, at.y + caster.radius);
-                if of_loop.min.y > high || of_loop.max.y < low {
-                    continue;
-                }
+            for &Part { of_loop, at, .. } in parts {
+                let (low, high) = (at.y - radius, at.y + radius);
                 let meets = |edge: &&[DVec2; 2]| edge[0].y <= high && edge[1].y >= low;
                 let mut crossed = [0; 2];
                 for edge in of_loop.edges.iter().filter(meets) {
                     for (node, point) in crossed.iter_mut().zip(edge) {
-                        *node = first_from(&self.nodes, (point.y - at.y) / caster.radius, *node);
+                        *node = first_from(&self.nodes, (point.y - at.y) / radius, *node);
                     }
                     let [first, end] = crossed;
                     if first < end {
@@ -239,16 +137,15 @@ impl Chords {
             for start in &mut hidden.starts {
                 total += core::mem::replace(start, total);
             }
-            hidden.crossings.clear();
             hidden.crossings.resize(total, 0.0);
             self.filled.clear();
             self.filled.extend_from_slice(&hidden.starts);
             for (at, [from, to], chords) in &self.near {
                 let slope = (to.x - from.x) / (to.y - from.y);
                 for chord in chords.clone() {
-                    let level = at.y + caster.radius * self.nodes[chord].height;
+                    let level = at.y + radius * self.nodes[chord].height;
                     let slot = &mut self.filled[chord];
-                    hidden.crossings[*slot] = from.x + (level - from.y) * slope - at.x;
+                    hidden.crossings[*slot] = (from.x + (level - from.y) * slope - at.x) as f32;
                     *slot += 1;
                 }
             }
@@ -256,23 +153,18 @@ impl Chords {
                 match &mut hidden.crossings[chord[0]..chord[1]] {
                     [] | [_] => {}
                     [a, b] => (*a, *b) = (a.min(*b), a.max(*b)),
-                    more => more.sort_unstable_by(f64::total_cmp),
+                    more => more.sort_unstable_by(f32::total_cmp),
                 }
             }
         }
     }
 
-    fn find_nodes<'a>(&mut self, casters: impl Iterator<Item = (&'a Occluder, DVec2)>) {
-        let turns = &mut self.turns;
-        turns.clear();
-        for (caster, at) in casters {
-            for of_loop in &caster.loops {
-                let height = |turn: &f64| (turn - (at.y - of_loop.base.y)) / caster.radius;
-                let inside = of_loop.turns.iter().map(height);
-                turns.extend(inside.filter(|v| v.abs() < 1.0).map(asin));
-            }
+    fn find_nodes(&mut self, parts: &[Part<'_>]) {
+        self.cuts.clear();
+        for part in parts {
+            part.cuts(&mut self.cuts);
         }
-        turns.sort_by(f64::total_cmp);
+        self.cuts.sort_unstable_by(f64::total_cmp);
         if self.pieces.is_empty() {
             let piece = |index: u32| {
                 nodes(
@@ -283,73 +175,67 @@ impl Chords {
             self.pieces = (0..PIECES).map(piece).collect();
         }
         self.nodes.clear();
-        let mut turns = turns.iter().copied().peekable();
+        let mut cuts = self.cuts.iter().copied().peekable();
         for (index, whole) in (0..PIECES).zip(&self.pieces) {
             let (mut from, to) = (
                 quadrature::angle(index, PIECES),
                 quadrature::angle(index + 1, PIECES),
             );
-            if turns.peek().is_none_or(|&turn| turn >= to) {
+            if cuts.peek().is_none_or(|&cut| cut >= to) {
                 self.nodes.extend(whole);
                 continue;
             }
-            while let Some(turn) = turns.next_if(|&turn| turn < to) {
-                if turn - from > 1e-9 {
-                    self.nodes.extend(nodes(from, turn));
-                    from = turn;
+            while let Some(cut) = cuts.next_if(|&cut| cut < to) {
+                if cut - from > 1e-9 {
+                    self.nodes.extend(nodes(from, cut));
+                    from = cut;
                 }
             }
             self.nodes.extend(nodes(from, to));
         }
     }
 
-    /// The density of one caster at the points of a block that begins so far behind the origin.
-    pub(super) fn density(&self, level: Level, caster: usize, block: f64, out: &mut [f32; BLOCK]) {
-        dispatch!(level, simd => self.add_density(simd, caster, block, out));
+    /// The density of one caster at the points.
+    pub(super) fn density(&self, level: Level, caster: usize, points: &Points, out: &mut Lane) {
+        dispatch!(level, simd => self.add_density(simd, caster, points, out));
     }
 
     #[inline(always)]
-    fn add_density<S: Simd>(&self, simd: S, caster: usize, block: f64, out: &mut [f32; BLOCK]) {
+    fn add_density<S: Simd>(&self, simd: S, caster: usize, points: &Points, out: &mut Lane) {
         let splat = |v: f32| f32x16::splat(simd, v);
         let hidden = &self.hidden[caster];
-        let x = hidden.lanes(simd);
+        let x = hidden.at(simd, points);
         let (zero, mut sum) = (splat(0.0), splat(0.0));
         for (index, node) in self.nodes.iter().enumerate() {
             let half = splat(node.half);
             for &[from, to] in hidden.of(index) {
-                let from = (splat(hidden.unit(from - block)) - x).max(-half);
-                let to = (splat(hidden.unit(to - block)) - x).min(half);
+                let from = (splat(from * hidden.factor) - x).max(-half);
+                let to = (splat(to * hidden.factor) - x).min(half);
                 sum += (to - from).max(zero) * node.weight;
             }
         }
         sum.min(splat(1.0)).store_slice(out);
     }
 
-    /// The part of the disc that both of two casters hide from such points.
-    pub(super) fn shared(
-        &self,
-        level: Level,
-        pair: [usize; 2],
-        block: f64,
-        out: &mut [f32; BLOCK],
-    ) {
-        dispatch!(level, simd => self.add_shared(simd, pair, block, out));
+    /// The part of the disc that both of two casters hide from the points.
+    pub(super) fn shared(&self, level: Level, pair: [usize; 2], points: &Points, out: &mut Lane) {
+        dispatch!(level, simd => self.add_shared(simd, pair, points, out));
     }
 
     #[inline(always)]
-    fn add_shared<S: Simd>(&self, simd: S, pair: [usize; 2], block: f64, out: &mut [f32; BLOCK]) {
+    fn add_shared<S: Simd>(&self, simd: S, pair: [usize; 2], points: &Points, out: &mut Lane) {
         let splat = |v: f32| f32x16::splat(simd, v);
-        let [a, b] = pair.map(|caster| &self.hidden[caster]);
-        let (x_a, x_b) = (a.lanes(simd), b.lanes(simd));
+        let [a, b] = [&self.hidden[pair[0]], &self.hidden[pair[1]]];
+        let (x_a, x_b) = (a.at(simd, points), b.at(simd, points));
         let (zero, mut sum) = (splat(0.0), splat(0.0));
         for (index, node) in self.nodes.iter().enumerate() {
             let half = splat(node.half);
             for &[from, to] in a.of(index) {
-                let from_a = (splat(a.unit(from - block)) - x_a).max(-half);
-                let to_a = (splat(a.unit(to - block)) - x_a).min(half);
+                let from_a = (splat(from * a.factor) - x_a).max(-half);
+                let to_a = (splat(to * a.factor) - x_a).min(half);
                 for &[from, to] in b.of(index) {
-                    let from = (splat(b.unit(from - block)) - x_b).max(from_a);
-                    let to = (splat(b.unit(to - block)) - x_b).min(to_a);
+                    let from = (splat(from * b.factor) - x_b).max(from_a);
+                    let to = (splat(to * b.factor) - x_b).min(to_a);
                     sum += (to - from).max(zero) * node.weight;
                 }
             }
@@ -357,16 +243,68 @@ impl Chords {
         sum.min(splat(1.0)).store_slice(out);
     }
 
-    /// What all casters hold back of the light at one of the points, where `held` says what they do together of a ray that
-    /// some of them hide (1) and others do not (0).
-    pub(super) fn held(&mut self, x: f64, mut held: impl FnMut(&[f32]) -> f32) -> f32 {
+    /// The part of the disc that any caster hides from the points, in steps: for each caster in turn what it and those before it
+    /// hide counts by its weight.
+    pub(super) fn united(
+        &mut self,
+        level: Level,
+        weights: &[f32],
+        points: &Points,
+        out: &mut Lane,
+    ) {
+        dispatch!(level, simd => self.add_united(simd, weights, points, out));
+    }
+
+    #[inline(always)]
+    fn add_united<S: Simd>(&mut self, simd: S, weights: &[f32], points: &Points, out: &mut Lane) {
+        let splat = |v: f32| f32x16::splat(simd, v);
+        let mut sum = splat(0.0);
+        for (index, node) in self.nodes.iter().enumerate() {
+            let half = splat(node.half);
+            self.begins.clear();
+            self.stops.clear();
+            for (hidden, &weight) in self.hidden.iter().zip(weights) {
+                let x = hidden.at(simd, points);
+                for &[from, to] in hidden.of(index) {
+                    let from = splat(from * hidden.factor) - x;
+                    let to = splat(to * hidden.factor) - x;
+                    insert(simd, &mut self.begins, from.max(-half).min(half));
+                    insert(simd, &mut self.stops, to.max(-half).min(half));
+                }
+                if weight == 0.0 {
+                    continue;
+                }
+                // With beginnings and ends in order each by themselves, what is between an end and the next one is hidden but
+                // for what is before as many beginnings.
+                let (mut before, mut length) = (-half, splat(0.0));
+                for (begin, stop) in self.begins.iter().zip(&self.stops) {
+                    let begin = f32x16::from_slice(simd, begin);
+                    let stop = f32x16::from_slice(simd, stop);
+                    length += stop - begin.max(before);
+                    before = stop;
+                }
+                sum += length * (node.weight * weight);
+            }
+        }
+        sum.store_slice(out);
+    }
+
+    /// What all casters hold back of the light at one of the points, where `held` says what they do together of a ray that some of
+    /// them hide (1) and others do not (0).
+    pub(super) fn held(
+        &mut self,
+        points: &Points,
+        lane: usize,
+        mut held: impl FnMut(&[f32]) -> f32,
+    ) -> f32 {
         let mut sum = 0.0;
         for (index, node) in self.nodes.iter().enumerate() {
             self.ends.clear();
             for (caster, hidden) in self.hidden.iter().enumerate() {
+                let x = points.pixels[lane] + points.offsets[lane] * hidden.side;
                 for &[from, to] in hidden.of(index) {
-                    let from = hidden.unit(from - x).max(-node.half);
-                    let to = hidden.unit(to - x).min(node.half);
+                    let from = ((from - x) * hidden.factor).max(-node.half);
+                    let to = ((to - x) * hidden.factor).min(node.half);
                     if from < to {
                         self.ends.push((from, caster, true));
                         self.ends.push((to, caster, false));
@@ -387,6 +325,62 @@ impl Chords {
             sum += node.weight * (node.half - done) * held(&self.inside);
         }
         sum
+    }
+}
+
+/// Puts a value into a list that is in order, lane by lane.
+#[inline(always)]
+fn insert<S: Simd>(simd: S, list: &mut Vec<Lane>, value: f32x16<S>) {
+    let mut value = value;
+    for slot in list.iter_mut() {
+        let other = f32x16::from_slice(simd, slot);
+        other.min(value).store_slice(slot);
+        value = other.max(value);
+    }
+    let mut last = [0.0; LANES];
+    value.store_slice(&mut last);
+    list.push(last);
+}
+
+impl Part<'_> {
+    /// How far from a pixel's middle it still matters to it.
+    fn reach(&self) -> f64 {
+        self.radius + self.side / 2.0
+    }
+
+    /// Whether it may matter to any of the points.
+    pub(super) fn is_near(&self) -> bool {
+        let reach = self.reach();
+        self.of_loop.min.x <= self.at.x + self.width + reach
+            && self.of_loop.max.x >= self.at.x - reach
+    }
+
+    /// Adds the angles at which the disc's height is to be cut for this part, as far as it is near the points.
+    fn cuts(&self, out: &mut Vec<f64>) {
+        let reach = self.reach();
+        let (left, right) = (self.at.x - reach, self.at.x + self.width + reach);
+        let height = |y: f64| (y - self.at.y) / self.radius;
+        for [from, to] in &self.of_loop.turns {
+            let v = height(from.y);
+            if v.abs() < 1.0 && to.x >= left && from.x <= right {
+                out.push(asin(v));
+            }
+        }
+        for [from, to] in &self.of_loop.edges {
+            let slope = (to.x - from.x) / (to.y - from.y);
+            if slope.abs() <= SLANTED {
+                continue;
+            }
+            // Where between its ends it is near.
+            let ends = [left, right].map(|x| from.y + (x - from.x) / slope);
+            let low = height(from.y.max(ends[0].min(ends[1]))).max(-1.0);
+            let high = height(to.y.min(ends[0].max(ends[1]))).min(1.0);
+            if low < high {
+                let steps = ((high - low) * sqrt(slope.abs()) / SLANTED_STEP).ceil();
+                let cut = |step: u32| asin(low + (high - low) * (f64::from(step) / steps));
+                out.extend((0..=steps as u32).map(cut));
+            }
+        }
     }
 }
 
@@ -412,20 +406,16 @@ fn nodes(from: f64, to: f64) -> [Node; 2] {
 }
 
 impl Spans {
-    fn of(&self, chord: usize) -> &[[f64; 2]] {
-        self.crossings[self.starts[chord]..self.starts[chord + 1]]
-            .as_chunks()
-            .0
-    }
-
-    /// How far behind its block's first one each point is, in the unit of the disc.
+    /// Where the points are in the unit of the disc.
     #[inline(always)]
-    fn lanes<S: Simd>(&self, simd: S) -> f32x16<S> {
-        lanes(simd) * self.factor
+    fn at<S: Simd>(&self, simd: S, points: &Points) -> f32x16<S> {
+        let offsets = f32x16::from_slice(simd, &points.offsets) * self.side;
+        (f32x16::from_slice(simd, &points.pixels) + offsets) * self.factor
     }
 
-    /// A distance in pixels in the unit of the disc.
-    fn unit(&self, distance: f64) -> f32 {
-        distance as f32 * self.factor
+    fn of(&self, chord: usize) -> &[[f32; 2]] {
+        let ends = self.starts.get(chord).zip(self.starts.get(chord + 1));
+        let crossings = ends.map(|(&first, &end)| &self.crossings[first..end]);
+        crossings.unwrap_or_default().as_chunks().0
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::chords::Occluder;
+use super::occluder::Occluder;
 use crate::compose::caster::{AnyShadow, Cast};
 use crate::density::{averaged_side, flatness};
 use crate::tilted::Circle;
@@ -55,11 +55,6 @@ impl Member {
             Kind::Level(occluder) => averaged_side(occluder.radius),
             Kind::Tilted(_) => 0.0,
         }
-    }
-
-    /// Whether points of a row see it along the same chords, each as it is at the point.
-    pub(super) fn is_plain(&self) -> bool {
-        matches!(self.kind, Kind::Level(_)) && self.averaged_side() == 0.0
     }
 }
 

@@ -20,7 +20,7 @@ pub(super) struct Pixels {
 
 /// The casts that hide a part of the disc as lower bits, those that hide all of it as upper ones. The last bit of both stands
 /// for all casts from there on.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Seen(u32);
 
 /// Densities within this of 0 and 1 are these.

@@ -1,7 +1,9 @@
 //! An image as the fill of a surface, pixel by pixel.
 
+use glam::DVec2;
 use tiny_skia::{
-    FilterQuality, Paint, Pattern, Pixmap, PremultipliedColorU8, Rect, SpreadMode, Transform,
+    ColorU8, FilterQuality, Paint, Pattern, Pixmap, PremultipliedColorU8, Rect, SpreadMode,
+    Transform,
 };
 
 use crate::error::{Error, Result};
@@ -13,26 +15,31 @@ pub(super) struct Texture {
     pixmap: Pixmap,
 }
 
+/// An image as tiny-skia has them.
+pub(super) fn premultiplied(image: &Image) -> Result<Pixmap> {
+    let [width, height] = image.size();
+    let mut pixmap = empty(width, height)?;
+    let pixels = pixmap.pixels_mut().iter_mut();
+    for (to, from) in pixels.zip(image.pixels().chunks_exact(4)) {
+        *to = ColorU8::from_rgba(from[0], from[1], from[2], from[3]).premultiply();
+    }
+    Ok(pixmap)
+}
+
+fn empty(width: u32, height: u32) -> Result<Pixmap> {
+    Pixmap::new(width, height).ok_or(Error::PictureSize {
+        width: u64::from(width),
+        height: u64::from(height),
+    })
+}
+
 impl Texture {
     /// An image spread over a place, on a grid's pixels.
-    pub(super) fn new(image: &Image, place: &Place, grid: &Grid) -> Result<Self> {
-        let [width, height] = image.size();
-        let none = |width: u32, height: u32| Error::PictureSize {
-            width: u64::from(width),
-            height: u64::from(height),
-        };
-        let mut source = Pixmap::new(width, height).ok_or_else(|| none(width, height))?;
-        for (to, from) in source
-            .pixels_mut()
-            .iter_mut()
-            .zip(image.pixels().chunks_exact(4))
-        {
-            *to = tiny_skia::ColorU8::from_rgba(from[0], from[1], from[2], from[3]).premultiply();
-        }
-        let mut pixmap = Pixmap::new(grid.width(), grid.height())
-            .ok_or_else(|| none(grid.width(), grid.height()))?;
+    pub(super) fn new(image: &Pixmap, place: &Place, grid: &Grid) -> Result<Self> {
+        let mut pixmap = empty(grid.width(), grid.height())?;
         let scale = grid.pixels_per_unit();
-        let texel = place.size * scale / glam::DVec2::new(f64::from(width), f64::from(height));
+        let texel =
+            place.size * scale / DVec2::new(f64::from(image.width()), f64::from(image.height()));
         let corner = place.min * scale - grid.corner();
         let transform = Transform::from_row(
             texel.x as f32,
@@ -44,7 +51,7 @@ impl Texture {
         );
         let paint = Paint {
             shader: Pattern::new(
-                source.as_ref(),
+                image.as_ref(),
                 SpreadMode::Pad,
                 FilterQuality::Bilinear,
                 1.0,
