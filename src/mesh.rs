@@ -271,8 +271,13 @@ impl Shadow {
         scratch: &mut Scratch,
         sink: &mut impl MeshSink,
     ) -> Result<Option<MeshQuality>> {
+        if options.quick
+            && let Some(quality) = halving::mesh(self, options, scratch, sink)?
+        {
+            return Ok(Some(quality));
+        }
         match self.strips(options, scratch, sink)? {
-            None => halving::mesh(self, options, scratch, sink),
+            None if !options.quick => halving::mesh(self, options, scratch, sink),
             found => Ok(found),
         }
     }

@@ -7,10 +7,11 @@
 //! networks").
 //!
 //! Neither the tangent construction nor a triangulator is needed: a mesh takes some hundred microseconds, and where detail is
-//! small it has hardly more triangles than refinement's. Along long straight edges it has many more, so outlines with those are
-//! left to refinement unless speed is asked for, and so are all that bend density between samples, such as a circle as large
-//! as the disc.
+//! small it has hardly more triangles than refinement's. Sides along the axes are [folded away](folds::Folds) where they are long;
+//! along others and about large corners there are many more triangles, so such outlines are left to refinement unless speed is
+//! asked for, and so are all that bend density between samples too much, such as a circle as large as the disc.
 
+mod folds;
 mod halves;
 mod tips;
 mod tube;
@@ -20,14 +21,15 @@ use core::f64::consts::FRAC_2_PI;
 use fearless_simd::{Simd, dispatch};
 use glam::DVec2;
 
+use self::folds::{Folds, Sides};
 use self::halves::Halves;
 use self::tips::Tip;
 use self::tube::Tube;
 use super::{MeshOptions, MeshQuality, MeshSink, MeshVertex, Profile};
-use crate::density::{self, CURVES, Each, PixelOptions, direct};
+use crate::density::{Each, PixelOptions, direct};
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::plan::Method;
+use crate::outline::{self, Edge};
 use crate::scratch::Scratch;
 use crate::shadow::Shadow;
 
@@ -51,6 +53,9 @@ const DETAIL: f64 = 2.0;
 /// The largest extent of an outline, in penumbra radii, whatever its detail: beyond, refinement takes no longer.
 const WIDEST: f64 = 32.0;
 
+/// The least extent of an outline that is folded, in penumbra radii.
+const FOLDED: f64 = 3.0;
+
 /// The most samples: a mesh that needs them takes as long as its refinement would.
 const MOST: usize = 1 << 20;
 
@@ -72,60 +77,58 @@ const ROUNDING_SHARE: f64 = 0.02;
 /// What this leaves from mesh to mesh: memory.
 #[derive(Debug, Default)]
 pub(crate) struct HalvingScratch {
+    folds: Folds,
+    /// The outline's edges without what is folded away.
+    folded: Vec<Edge>,
+    tips: Vec<Tip>,
     tube: Tube,
     halves: Halves,
-    tips: Vec<Tip>,
-    /// Each sample's number among the vertices.
+    /// The triangles, by the samples at their corners and on which side of a cut each of these is.
+    corners: Vec<[u32; 3]>,
+    /// The number of each such sample among the vertices.
     numbers: Vec<u32>,
-    /// The samples that are vertices, by number.
-    vertices: Vec<usize>,
+    /// Those that are vertices, by number.
+    vertices: Vec<u32>,
 }
 
-/// Where the samples are.
+/// Where the samples are, without what is folded away.
 #[derive(Debug, Clone, Copy)]
 struct Lattice {
     /// The first sample, in scene units, and from each to the next.
     corner: DVec2,
     pitch: f64,
-    /// Squares.
-    squares: [usize; 2],
+    /// Columns and rows of samples.
+    size: [usize; 2],
 }
 
 impl Lattice {
-    /// About a shadow, so many samples a penumbra radius.
-    fn of(shadow: &Shadow, samples: f64) -> Option<Self> {
-        let radius = shadow.radius();
-        let (min, max) = shadow.hull()?;
-        if (max - min).max_element() > WIDEST * radius {
-            return None;
-        }
-        let pitch = radius / samples;
-        let reach = radius + MARGIN * pitch;
-        let size = max - min + 2.0 * reach;
-        let squares = (size / (pitch * SIDE as f64)).ceil();
-        let lattice = Self {
-            corner: min.midpoint(max) - squares * (0.5 * pitch * SIDE as f64),
-            pitch,
-            squares: [squares.x as usize, squares.y as usize],
-        };
-        let [columns, rows] = lattice.size();
-        (columns * rows <= MOST).then_some(lattice)
-    }
-
-    /// Columns and rows of samples.
-    fn size(&self) -> [usize; 2] {
-        self.squares.map(|count| count * SIDE + 1)
-    }
-
     /// The pixels whose centres they are.
     fn grid(&self) -> Grid {
-        let [columns, rows] = self.size();
+        let [columns, rows] = self.size;
         Grid::of_centers(self.corner, [columns as u32, rows as u32], self.pitch)
+    }
+
+    /// How many there are.
+    fn count(&self) -> usize {
+        self.size[0] * self.size[1]
     }
 
     /// Where the sample of a column and row is.
     fn place(&self, sample: [usize; 2]) -> DVec2 {
         self.corner + DVec2::from(sample.map(|at| at as f64)) * self.pitch
+    }
+
+    /// A sample as a number, with the sides of cuts on which it is.
+    fn key(&self, [x, y]: [usize; 2], sides: Sides) -> u32 {
+        let sides = usize::from(sides[0]) + 2 * usize::from(sides[1]);
+        (sides * self.count() + y * self.size[0] + x) as u32
+    }
+
+    /// The sample and the sides of a number.
+    fn of_key(&self, key: u32) -> ([usize; 2], Sides) {
+        let (sides, sample) = (key as usize / self.count(), key as usize % self.count());
+        let sample = [sample % self.size[0], sample / self.size[0]];
+        (sample, [sides % 2 > 0, sides > 1])
     }
 }
 
@@ -134,16 +137,25 @@ fn samples(levels: f64) -> f64 {
     (SAMPLES / libm::cbrt(levels * levels)).max(FEWEST)
 }
 
+/// Whether an outline has so little between its corners that refinement would take about as many triangles.
+fn is_detailed(shadow: &Shadow) -> bool {
+    let census = shadow.census();
+    census.line_length + census.arc_length <= DETAIL * shadow.radius() * census.pieces
+}
+
+/// Pushes a shadow's edges as samples are drawn of them.
+fn push_edges(shadow: &Shadow, levels: f64, edges: &mut Vec<Edge>) {
+    shadow.edges_into(SAMPLE_SHARE * levels, 0.0, edges);
+}
+
 /// How many samples a shadow's mesh takes at least, unless its outline's detail is so large that refinement's triangles are much
 /// fewer.
 pub(crate) fn forecast(shadow: &Shadow, levels: f64) -> Option<usize> {
-    let census = shadow.census();
-    let detail = (census.line_length + census.arc_length) / census.pieces;
-    let lattice =
-        (detail <= DETAIL * shadow.radius()).then(|| Lattice::of(shadow, samples(levels)));
-    lattice
-        .flatten()
-        .map(|lattice| lattice.size().iter().product())
+    let mut edges = Vec::new();
+    push_edges(shadow, levels, &mut edges);
+    let mut scratch = HalvingScratch::default();
+    let lattice = scratch.lay(&edges, shadow.radius(), samples(levels))?;
+    is_detailed(shadow).then_some(lattice.count())
 }
 
 /// Gives a sink the triangles of a shadow, if halving suits it: nothing is given otherwise.
@@ -153,31 +165,60 @@ pub(super) fn mesh(
     scratch: &mut Scratch,
     sink: &mut impl MeshSink,
 ) -> Result<Option<MeshQuality>> {
-    let levels = options.tolerance.as_levels();
     let soft = options.profile == Profile::Disc && shadow.radius() > 0.0;
-    if !soft || !(options.quick || forecast(shadow, levels).is_some()) {
+    if !soft || !(options.quick || is_detailed(shadow)) {
         return Ok(None);
     }
-    let samples = samples(levels);
+    let levels = options.tolerance.as_levels();
     let mut kept = core::mem::take(&mut scratch.halving);
     let mut edges = scratch.take();
-    shadow.edges_into(SAMPLE_SHARE * levels, 0.0, &mut edges);
-    tips::find(&edges, shadow.radius(), &mut kept.tips);
-    scratch.give(edges);
+    push_edges(shadow, levels, &mut edges);
     let mut found = Ok(None);
     for finer in FINER {
-        if let Some(lattice) = Lattice::of(shadow, finer * samples) {
+        let lattice = kept.lay(&edges, shadow.radius(), finer * samples(levels));
+        if let Some(lattice) = lattice {
             found = kept.mesh(shadow, options, &lattice, scratch, sink);
         }
-        if !matches!(found, Ok(None)) {
+        if lattice.is_none() || !matches!(found, Ok(None)) {
             break;
         }
     }
+    scratch.give(edges);
     scratch.halving = kept;
     found
 }
 
 impl HalvingScratch {
+    /// Lays a lattice over an outline, so many samples a penumbra radius, if it is not too large. What it folds away is not laid over.
+    fn lay(&mut self, edges: &[Edge], radius: f64, samples: f64) -> Option<Lattice> {
+        let (min, max) = outline::bounds(edges.iter())?;
+        let pitch = radius / samples;
+        let corner = min - (radius + MARGIN * pitch);
+        self.folded.clear();
+        if (max - min).max_element() > FOLDED * radius {
+            self.folds.find(edges, radius, corner, pitch);
+            let folded = edges
+                .iter()
+                .map(|edge| self.folds.fold(edge, corner, pitch));
+            self.folded.extend(folded);
+        } else {
+            self.folds.clear();
+            self.folded.extend(edges);
+        }
+        let (_, max) = outline::bounds(self.folded.iter())?;
+        if (max - min).max_element() > WIDEST * radius {
+            return None;
+        }
+        let end = max + (radius + MARGIN * pitch);
+        let squares = ((end - corner) / (pitch * SIDE as f64)).ceil();
+        let lattice = Lattice {
+            corner,
+            pitch,
+            size: [squares.x, squares.y].map(|count| count as usize * SIDE + 1),
+        };
+        (lattice.count() <= MOST).then_some(lattice)
+    }
+
     /// Gives a sink the triangles between samples, if these are near enough to one another.
     fn mesh(
         &mut self,
@@ -187,71 +228,66 @@ impl HalvingScratch {
         scratch: &mut Scratch,
         sink: &mut impl MeshSink,
     ) -> Result<Option<MeshQuality>> {
-        let levels = options.tolerance.as_levels();
-        let far = lattice
-            .corner
-            .abs()
-            .max(lattice.place(lattice.size()).abs());
+        let (levels, radius) = (options.tolerance.as_levels(), shadow.radius());
+        let end = lattice.place(lattice.size) + self.folds.offset(lattice.size, [true; 2]);
+        let far = lattice.corner.abs().max(end.abs());
         // Density changes by at most 2 / π over the radius.
-        let rounding =
-            255.0 * far.max_element() * f64::from(f32::EPSILON) * FRAC_2_PI / shadow.radius();
+        let rounding = 255.0 * far.max_element() * f64::from(f32::EPSILON) * FRAC_2_PI / radius;
         if rounding > ROUNDING_SHARE * levels {
             return Ok(None);
         }
         let unsure = SAMPLE_SHARE * levels + direct::ROUNDING + rounding;
         let limit = SAMPLED * (levels - unsure) / 255.0;
-        let height = |tip: &Tip| tip.height(lattice.pitch, shadow.radius());
+        tips::find(&self.folded, radius, &mut self.tips);
+        let height = |tip: &Tip| tip.height(lattice.pitch, radius);
         if self.tips.iter().any(|tip| height(tip) > limit) {
             return Ok(None);
         }
         let limit = limit as f32;
         let grid = lattice.grid();
-        let pixels = PixelOptions {
-            tolerance: options.tolerance.divided(CURVES / SAMPLE_SHARE),
-            method: Some(Method::Direct),
-            ..PixelOptions::default()
-        };
-        let densities = self.tube.begin(lattice.size());
         let mut samples = Each {
-            pixels: densities,
+            pixels: self.tube.begin(lattice.size),
             stride: grid.stride(),
-            put: |sample: &mut f32, density: f32| *sample = (*sample + density).min(1.0),
+            put: |sample: &mut f32, density: f32| *sample = density,
         };
-        density::draw(shadow, &grid, &pixels, scratch, &mut samples);
-        let Self {
-            tube, halves, tips, ..
-        } = self;
-        let fine = dispatch!(scratch.level(), simd => simd.vectorize(
+        let all = PixelOptions::default();
+        let (folded, level) = (&self.folded, scratch.level());
+        dispatch!(level, simd => {
+            direct::fill(simd, folded, radius, &grid, &all, scratch, &mut samples);
+        });
+        let Self { tube, halves, .. } = self;
+        let fine = dispatch!(level, simd => simd.vectorize(
             #[inline(always)]
             || tube.surround(limit),
         ));
         if !fine {
             return Ok(None);
         }
-        for tip in tips {
+        for tip in &self.tips {
             let place = (tip.center - lattice.corner) / lattice.pitch;
             tube.narrow(place, tip.miss / lattice.pitch + TIP, height(tip) as f32);
         }
-        dispatch!(scratch.level(), simd => simd.vectorize(
+        dispatch!(level, simd => simd.vectorize(
             #[inline(always)]
             || halves.choose(tube),
         ));
         halves.collect(tube);
+        self.unfold(lattice);
         self.number(lattice);
         if self.vertices.len() > options.max_vertices {
             return Ok(None);
         }
-        sink.begin(self.vertices.len(), self.halves.triangles.len())?;
-        let columns = lattice.size()[0];
-        for &sample in &self.vertices {
-            let place = [sample % columns, sample / columns];
+        sink.begin(self.vertices.len(), self.corners.len())?;
+        for &key in &self.vertices {
+            let (sample, sides) = lattice.of_key(key);
+            let position = lattice.place(sample) + self.folds.offset(sample, sides);
             sink.vertex(MeshVertex {
-                position: lattice.place(place).as_vec2().to_array(),
-                density: self.tube.at(place),
+                position: position.as_vec2().to_array(),
+                density: self.tube.at(sample),
             });
         }
-        for corners in &self.halves.triangles {
-            sink.triangle(corners.map(|sample| self.numbers[sample as usize]));
+        for corners in &self.corners {
+            sink.triangle(corners.map(|key| self.numbers[key as usize]));
         }
         Ok(Some(MeshQuality {
             error_levels: levels,
@@ -259,17 +295,61 @@ impl HalvingScratch {
         }))
     }
 
-    /// Numbers the samples that are corners of triangles, in the order in which they come.
+    /// Puts the triangles on their sides of the cuts, and rectangles between the sides.
+    fn unfold(&mut self, lattice: &Lattice) {
+        let Self { folds, corners, .. } = self;
+        corners.clear();
+        for triangle in &self.halves.triangles {
+            let samples = triangle.map(|sample| lattice.of_key(sample).0);
+            let [a, b, c] = samples;
+            let end = [0, 1].map(|axis: usize| a[axis].max(b[axis]).max(c[axis]));
+            let sides = |sample: [usize; 2]| {
+                let through = folds.through(sample);
+                [0, 1].map(|axis: usize| through[axis] && sample[axis] < end[axis])
+            };
+            corners.push(samples.map(|sample| lattice.key(sample, sides(sample))));
+            if !folds.any() {
+                continue;
+            }
+            for [from, to] in [[a, b], [b, c], [c, a]] {
+                for axis in 0..2 {
+                    // Of the triangles beside a cut, those before it.
+                    let on_cut = |at: [usize; 2]| folds.through(at)[axis] && at[axis] == end[axis];
+                    if on_cut(from) && on_cut(to) {
+                        let key = |at: [usize; 2], behind: bool| {
+                            let mut sides = sides(at);
+                            sides[axis] = behind;
+                            lattice.key(at, sides)
+                        };
+                        let near = [from, to].map(|at| key(at, false));
+                        let far = [from, to].map(|at| key(at, true));
+                        corners.push([near[1], near[0], far[0]]);
+                        corners.push([near[1], far[0], far[1]]);
+                    }
+                }
+            }
+        }
+        for sample in folds.crossings() {
+            if self.tube.at(sample) > 0.0 {
+                let [a, b, c, d] = [[false, false], [true, false], [true, true], [false, true]]
+                    .map(|sides| lattice.key(sample, sides));
+                corners.extend([[a, b, c], [a, c, d]]);
+            }
+        }
+    }
+
+    /// Numbers the corners of triangles in the order in which they come.
     fn number(&mut self, lattice: &Lattice) {
         const NONE: u32 = u32::MAX;
+        let sides = if self.folds.any() { 4 } else { 1 };
         self.numbers.clear();
-        self.numbers.resize(lattice.size().iter().product(), NONE);
+        self.numbers.resize(sides * lattice.count(), NONE);
         self.vertices.clear();
-        for &corner in self.halves.triangles.iter().flatten() {
+        for &corner in self.corners.iter().flatten() {
             let number = &mut self.numbers[corner as usize];
             if *number == NONE {
                 *number = self.vertices.len() as u32;
-                self.vertices.push(corner as usize);
+                self.vertices.push(corner);
             }
         }
     }

@@ -1,4 +1,4 @@
-//! Quick meshes: of an icon, of a flag with long sides and of a ring.
+//! Quick meshes: of an icon, of a flag with long sides, of a ring, and of a card and an L whose sides are folded away.
 
 use penumbral::{FillRule, Grid, Light, MeshOptions, MeshVertex, Path, ShadowMesh, Shape};
 
@@ -7,10 +7,15 @@ use crate::checks::*;
 const BELL: &str = "M12 22A2 2 0 0 0 14 20H10A2 2 0 0 0 12 22M18 16V11C18 7.93 16.36 5.36 13.5 4.68V4A1.5 1.5 0 0 0 10.5 4\
     V4.68C7.63 5.36 6 7.92 6 11V16L4 18V19H20V18Z";
 
-fn shapes() -> [(&'static str, Shape); 3] {
+fn shapes() -> [(&'static str, Shape); 5] {
     let shape = |data: &str, rule| Shape::path(&Path::from_svg(data).unwrap(), rule).unwrap();
     [
         ("bell", shape(BELL, FillRule::NonZero)),
+        (
+            "card",
+            Shape::rounded_rect(-3.0, 1.0, 150.0, 90.0, [3.0, 0.0, 6.0, 9.0]).unwrap(),
+        ),
+        ("L", shape("M0 0H90V12H20V60H0Z", FillRule::NonZero)),
         ("flag", shape("M0 0H40L24 9L40 18H0Z", FillRule::NonZero)),
         (
             "ring",

@@ -1,6 +1,8 @@
 //! Rounded rectangles: few triangles, whatever their corners and wherever an umbra vanishes.
 
-use penumbral::{CornerRadii, Grid, Light, MeshBuffers, MeshVertex, Scratch, ShadowMesh, Shape};
+use penumbral::{
+    CornerRadii, Grid, Light, MeshBuffers, MeshOptions, MeshVertex, Scratch, ShadowMesh, Shape,
+};
 
 use crate::checks::*;
 
@@ -69,6 +71,14 @@ fn rounded_rectangles(count: u32) {
         assert!(
             cut.is_nan() || missing.abs() <= slack,
             "{name}: mass off by {missing}"
+        );
+        worst = worst.max(error);
+        let quick = shadow.mesh(MeshOptions::new(levels(tolerance)).quick());
+        sanity_check(&quick);
+        let error = dense_error(&shadow, &quick, 8) / f64::from(tolerance);
+        assert!(
+            quick.is_complete() && error <= 1.0,
+            "{name}, quick: {error} of the tolerance"
         );
         worst = worst.max(error);
         // A scratch changes nothing, whatever it was used for.
