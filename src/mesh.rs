@@ -1,11 +1,13 @@
 //! Triangles over which linear interpolation of density stays within a tolerance.
 //!
-//! Rounded rectangles and circles are strips between rings, which need no triangulator. For all other outlines, and where
-//! no such strips were found, the tangent construction gives the skeleton: rings from the penumbra's outer edge to the umbra, at the distances that
-//! suit the profile best. Between them a constrained Delaunay triangulation (spade), inside the umbra a plain one (lyon);
-//! where the result is still wrong, as at corners and where there is no umbra, vertices are added until it is not.
+//! Rounded rectangles and circles are strips between rings, which need no triangulator. Outlines of small detail, such as
+//! icons, are [halved squares](halving), and so is whatever is to be there [quickly](MeshOptions::quick). For all other outlines,
+//! and where nothing of that was found, the tangent construction gives the skeleton: rings from the penumbra's outer edge to the
+//! umbra, at the distances that suit the profile best. Between them a constrained Delaunay triangulation (spade), inside the
+//! umbra a plain one (lyon); where the result is still wrong, as at corners and where there is no umbra, vertices are added until
+//! it is not.
 //!
-//! The tangent construction follows US 9,639,976; pixels ([`Shadow::fill_a8`]) and point queries do not use it.
+//! The tangent construction follows US 9,639,976; quick meshes, pixels ([`Shadow::fill_a8`]) and point queries do not use it.
 
 mod cache;
 mod cells;
@@ -88,8 +90,9 @@ impl MeshOptions {
         self
     }
 
-    /// With a mesh that is made as soon as may be, if it takes ten times the triangles: for outlines that change in every
-    /// frame. Otherwise time is only saved where it costs few triangles, as it does for icons under a wide penumbra.
+    /// With a mesh that is made as soon as may be, of up to ten times the triangles: for shadows that change in every frame,
+    /// such as a card's that rises. Otherwise time is only saved where it costs few triangles, as it does for icons under a wide
+    /// penumbra.
     ///
     /// ```
     /// use penumbral::{FillRule, Light, MeshOptions, Path, Shape, Tolerance};

@@ -3,7 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "what fails in a helper is the test")]
 
 use penumbral::{
-    Blending, Color, Error, FillRule, Grid, Hidden, Light, Limits, MAX_SEGMENTS, Path,
+    Blending, Bounds, Color, Error, FillRule, Grid, Hidden, Light, Limits, MAX_SEGMENTS, Path,
     PixelOptions, Pose, Renderer, Scene, Scratch, Shape, Surface, Tolerance, Tone,
 };
 use tiny_skia::Pixmap;
@@ -165,24 +165,29 @@ fn a_drawing_stops_where_it_is_told_to() {
     }
 }
 
-/// A picture of several bands of rows shows the same as windows of it that have one.
+/// A picture of several bands of rows shows the same as parts of it that are drawn in one.
 #[test]
 fn bands_of_a_large_picture_meet() {
-    let draw = |canvas: [f32; 2], up: f32| {
-        let light = Light::new([500.0, 500.0 - up, 600.0], 800.0).unwrap();
-        let mut scene = Scene::new(canvas, light).unwrap();
-        for (size, elevation) in [(900.0, 4.0), (500.0, 12.0)] {
-            let card = Shape::rounded_rect(60.0, 300.0 - up, size, 1.6 * size, 30.0).unwrap();
-            scene.push(Surface::new(card, elevation)).unwrap();
-        }
-        let mut pixmap = Pixmap::new(canvas[0] as u32, canvas[1] as u32).unwrap();
-        Renderer::new().render(&scene, &mut pixmap).unwrap();
-        pixmap
-    };
-    let whole = draw([1000.0, 2100.0], 0.0);
-    for first in [1000_u32, 1040] {
-        let part = draw([1000.0, 100.0], first as f32);
-        let rows = &whole.data()[first as usize * 4000..(first as usize + 100) * 4000];
-        assert!(part.data() == rows, "rows from {first} on");
+    let light = Light::new([500.0, 500.0, 600.0], 800.0).unwrap();
+    let mut scene = Scene::new([1000.0, 2100.0], light).unwrap();
+    for (size, elevation) in [(900.0, 4.0), (500.0, 12.0)] {
+        let card = Shape::rounded_rect(60.0, 300.0, size, 1.6 * size, 30.0).unwrap();
+        scene.push(Surface::new(card, elevation)).unwrap();
+    }
+    let mut renderer = Renderer::new();
+    let mut whole = Pixmap::new(1000, 2100).unwrap();
+    renderer.render(&scene, &mut whole).unwrap();
+    for first in [0_u32, 500, 1000, 1040, 2000] {
+        let rows = first as usize * 4000..(first as usize + 100) * 4000;
+        let part = Bounds {
+            min: [0.0, first as f32],
+            max: [1000.0, first as f32 + 100.0],
+        };
+        let mut pixmap = Pixmap::new(1000, 2100).unwrap();
+        renderer
+            .render_within(&scene, &[part], &mut pixmap)
+            .unwrap();
+        let (part, rows) = (&pixmap.data()[rows.clone()], &whole.data()[rows]);
+        assert!(part == rows, "rows from {first} on");
     }
 }

@@ -69,7 +69,7 @@ const TIP: f64 = 1.5;
 const SAMPLE_SHARE: f64 = 0.05;
 
 /// The part of what is left of it that a triangle may be off at samples, and as far as they tell between them.
-const SAMPLED: f64 = 0.96;
+const SAMPLED: f64 = 0.92;
 
 /// The part of the tolerance that rounding vertices may take.
 const ROUNDING_SHARE: f64 = 0.02;

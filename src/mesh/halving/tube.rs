@@ -6,7 +6,7 @@ use crate::density::lanes::NUMBERS;
 
 /// How far density may be off the chord between two samples, over the second differences there: where the penumbra ends between
 /// them it goes with the power 1.5 of the distance, and is off by 0.21 of the larger and 0.26 of their mean.
-const BETWEEN: f32 = 0.24;
+const BETWEEN: f32 = 0.26;
 
 /// Densities so near to 0 or 1 are that: a thousandth of a level.
 const NOISE: f32 = 4e-6;
