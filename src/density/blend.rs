@@ -150,8 +150,17 @@ impl Ink {
             brush.blend_part(block, &densities(part));
         }
         if !last.is_empty() {
-            let mut part = [0; PIXELS];
-            part[..last.len()].copy_from_slice(last);
+            let part = match mask.last_chunk() {
+                // Shifted down to the block's beginning.
+                Some(end) => {
+                    (u64::from_le_bytes(*end) >> (8 * (PIXELS - last.len()))).to_le_bytes()
+                }
+                None => {
+                    let mut part = [0; PIXELS];
+                    part[..last.len()].copy_from_slice(last);
+                    part
+                }
+            };
             let densities = f32x8::simd_from(simd, densities(&part));
             brush.blend_rest(rest, last.len(), densities);
         }

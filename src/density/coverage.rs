@@ -3,8 +3,8 @@
 use core::ops::Range;
 
 use fearless_simd::{
-    Bytes, Level, Simd, SimdFloat, SimdFrom, SimdInt, SimdNarrow, dispatch, f32x8, i32x8, u8x32,
-    u16x16,
+    Bytes, Level, Select, Simd, SimdBase, SimdFloat, SimdFrom, SimdInt, SimdNarrow, dispatch,
+    f32x8, i32x8, u8x32, u16x16,
 };
 
 use super::Sink;
@@ -20,53 +20,81 @@ pub(crate) struct A8<'a> {
 /// Pixels that are written at once.
 const PIXELS: usize = 32;
 
+/// Each pixel's own number in its block.
+const NUMBERS: [u8; PIXELS] = {
+    let mut numbers = [0; PIXELS];
+    let mut lane = 0;
+    while lane < PIXELS {
+        numbers[lane] = lane as u8;
+        lane += 1;
+    }
+    numbers
+};
+
 impl A8<'_> {
+    /// The mask of row `y` from column `first` on, and all behind it; what rounds the densities there.
     #[inline(always)]
-    fn row(&mut self, y: u32, columns: &Range<u32>) -> (&mut [u8], [u16; PATTERN]) {
-        let start = y as usize * self.layout.stride;
-        let row = &mut self.mask[start + columns.start as usize..start + columns.end as usize];
-        (row, thresholds(&self.layout, y, columns.start))
+    fn from(&mut self, y: u32, first: u32) -> (&mut [u8], [u16; PATTERN]) {
+        let start = y as usize * self.layout.stride + first as usize;
+        (&mut self.mask[start..], thresholds(&self.layout, y, first))
     }
 }
 
 impl Sink for A8<'_> {
     fn constant(&mut self, y: u32, columns: Range<u32>, density: f32) {
         let level = self.level;
-        let (row, thresholds) = self.row(y, &columns);
-        dispatch!(level, simd => add_constant(simd, row, density, thresholds));
+        let (mask, thresholds) = self.from(y, columns.start);
+        dispatch!(level, simd => add_constant(simd, mask, columns.len(), density, thresholds));
     }
 
     fn values(&mut self, y: u32, columns: Range<u32>, densities: &[f32]) {
         let level = self.level;
-        let (row, thresholds) = self.row(y, &columns);
-        dispatch!(level, simd => add_values(simd, row, densities, thresholds));
+        let (mask, thresholds) = self.from(y, columns.start);
+        dispatch!(level, simd => add_values(simd, mask, columns.len(), densities, thresholds));
     }
 }
 
+/// Adds one density to the first `count` pixels.
 #[inline(always)]
-fn add_constant<S: Simd>(simd: S, row: &mut [u8], density: f32, thresholds: [u16; PATTERN]) {
+fn add_constant<S: Simd>(
+    simd: S,
+    mask: &mut [u8],
+    count: usize,
+    density: f32,
+    thresholds: [u16; PATTERN],
+) {
     let coverage = Steps::new(simd, thresholds).coverage(&[density; PIXELS]);
-    let (blocks, rest) = row.as_chunks_mut();
-    for block in blocks {
+    let (blocks, rest) = mask.split_at_mut(count - count % PIXELS);
+    for block in blocks.as_chunks_mut().0 {
         add(simd, block, coverage);
     }
-    add_rest(simd, rest, coverage);
+    add_rest(simd, rest, count % PIXELS, coverage);
 }
 
-/// As many of the densities as the row has pixels.
+/// Adds the first `count` densities to as many pixels.
 #[inline(always)]
-fn add_values<S: Simd>(simd: S, row: &mut [u8], densities: &[f32], thresholds: [u16; PATTERN]) {
+fn add_values<S: Simd>(
+    simd: S,
+    mask: &mut [u8],
+    count: usize,
+    densities: &[f32],
+    thresholds: [u16; PATTERN],
+) {
     let steps = Steps::new(simd, thresholds);
-    let (parts, last) = densities[..row.len()].as_chunks();
-    let (blocks, rest) = row.as_chunks_mut();
-    for (block, part) in blocks.iter_mut().zip(parts) {
+    let (parts, last) = densities[..count].as_chunks();
+    let (blocks, rest) = mask.split_at_mut(PIXELS * parts.len());
+    for (block, part) in blocks.as_chunks_mut().0.iter_mut().zip(parts) {
         add(simd, block, steps.coverage(part));
     }
-    if !last.is_empty() {
-        let mut part = [0.0; PIXELS];
-        part[..last.len()].copy_from_slice(last);
-        add_rest(simd, rest, steps.coverage(&part));
-    }
+    let part = match densities[count - last.len()..].first_chunk() {
+        Some(part) => *part,
+        None => {
+            let mut part = [0.0; PIXELS];
+            part[..last.len()].copy_from_slice(last);
+            part
+        }
+    };
+    add_rest(simd, rest, last.len(), steps.coverage(&part));
 }
 
 #[inline(always)]
@@ -76,12 +104,19 @@ fn add<S: Simd>(simd: S, block: &mut [u8; PIXELS], coverage: u8x32<S>) {
         .into();
 }
 
+/// Adds the first `count` of a block's coverage, and 0 to other pixels, which leaves them as they are.
 #[inline(always)]
-fn add_rest<S: Simd>(simd: S, rest: &mut [u8], coverage: u8x32<S>) {
-    let mut block = [0; PIXELS];
-    block[..rest.len()].copy_from_slice(rest);
+fn add_rest<S: Simd>(simd: S, rest: &mut [u8], count: usize, coverage: u8x32<S>) {
+    let within = u8x32::from_slice(simd, &NUMBERS).simd_lt(u8x32::splat(simd, count as u8));
+    let coverage = within.select(coverage, u8x32::splat(simd, 0));
+    if let Some(block) = rest.first_chunk_mut() {
+        add(simd, block, coverage);
+        return;
+    }
+    let (mut block, rest) = ([0; PIXELS], &mut rest[..count]);
+    block[..count].copy_from_slice(rest);
     add(simd, &mut block, coverage);
-    rest.copy_from_slice(&block[..rest.len()]);
+    rest.copy_from_slice(&block[..count]);
 }
 
 /// How densities are rounded, along a row.
