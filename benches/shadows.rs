@@ -6,6 +6,7 @@
 //! | `exact`, `direct`, `grid`, `nine-patch` | blending a shadow by that method | shape / pixels a unit / r |
 //! | `auto` | the same by the method that the plan chooses | shape / pixels a unit / r |
 //! | `outputs` | one card blended plainly, dithered, with itself over it; as coverage, as densities; hiding it | output |
+//! | `tile` | a shadow kept as a [`NinePatch`] blended elsewhere; finding it by its key; blending a ready mask of its bounds | part / shape |
 //! | `area` | a card of so many pixels' side at r = 8 | side |
 //! | `radius` | concave paths and a card on their way from narrow to wide penumbrae | shape / r |
 //! | `cards` | 100 cards on 1920 x 1080: projecting them, blending all, blending what opaque cards leave to be seen | part |
@@ -36,8 +37,8 @@ use criterion::{
 };
 use penumbral::plan::Method;
 use penumbral::{
-    Color, FillRule, Grid, Hidden, Light, MeshBuffers, Paint, Path, PixelOptions, Renderer, Scene,
-    Scratch, Shadow, Shape, Surface, Tolerance, Tone,
+    Color, FillRule, Grid, Hidden, Light, MeshBuffers, NinePatch, Paint, Path, PixelOptions,
+    Renderer, Scene, Scratch, Shadow, Shape, Surface, Tolerance, Tone,
 };
 use tiny_skia::Pixmap;
 
@@ -213,6 +214,45 @@ fn outputs(c: &mut Criterion) {
             hidden.add(black_box(&card), scratch);
         });
     });
+    group.finish();
+}
+
+fn tile(c: &mut Criterion) {
+    let mut group = c.benchmark_group("tile");
+    let paint = Paint::new(Color::BLACK, 0.19).unwrap();
+    let mut scratch = Scratch::new();
+    for (name, shape) in [
+        ("card", rounded(300.0, 200.0, 12.0)),
+        ("button", rounded(56.0, 56.0, 16.0)),
+        ("bar", rounded(1000.0, 48.0, 8.0)),
+    ] {
+        let shadow = shadow(&shape, 10.8);
+        let (key, place) = shadow.key(1.0, Tolerance::ONE_LEVEL).unwrap();
+        let patch = NinePatch::draw(&key, &mut scratch).unwrap();
+        let size = [0, 1].map(|axis| (place.max[axis] - place.min[axis]) as u32);
+        let grid = Grid::new(place.min.map(|v| v as f32), size, 1.0).unwrap();
+        let mut mask = vec![0; pixels(&grid)];
+        shadow.fill_a8(&grid, &mut mask, &mut scratch).unwrap();
+        let mut canvas = vec![255; 4 * pixels(&grid)];
+        group.throughput(Throughput::Elements(pixels(&grid) as u64));
+        group.bench_function(BenchmarkId::new("blend", name), |b| {
+            b.iter(|| {
+                black_box(&patch)
+                    .blend_rgba8(place, &grid, &mut canvas, &paint, &mut scratch)
+                    .unwrap();
+            });
+        });
+        group.bench_function(BenchmarkId::new("ready-mask", name), |b| {
+            b.iter(|| {
+                paint
+                    .blend_mask(&grid, black_box(&mask), &mut canvas, &mut scratch)
+                    .unwrap();
+            });
+        });
+        group.bench_function(BenchmarkId::new("key", name), |b| {
+            b.iter(|| black_box(&shadow).key(1.0, Tolerance::ONE_LEVEL));
+        });
+    }
     group.finish();
 }
 
@@ -496,6 +536,6 @@ fn brief() -> Criterion {
 criterion_group! {
     name = benches;
     config = brief();
-    targets = cast, methods, outputs, area, radius, cards, mesh, mesh_into, raster, render, layers
+    targets = cast, methods, outputs, tile, area, radius, cards, mesh, mesh_into, raster, render, layers
 }
 criterion_main!(benches);

@@ -6,8 +6,10 @@ pub(crate) mod blend;
 mod buffer;
 mod chords;
 pub(crate) mod circle;
+mod coverage;
 mod cubic;
 pub(crate) mod direct;
+mod dither;
 pub(crate) mod exact;
 pub(crate) mod frame;
 pub(crate) mod grid;
@@ -278,15 +280,22 @@ mod tests {
                     let drawn = levels.iter().map(|level| {
                         let mut scratch = Scratch::at_level(*level);
                         let mut densities = vec![0.0; 125 * 121];
+                        let mut mask = vec![0; 125 * 121];
                         let mut pixels = vec![180; 4 * 125 * 121];
                         shadow
                             .fill_f32(&grid, &mut densities, &options, &mut scratch)
                             .unwrap();
                         shadow
+                            .fill_a8_with(&grid, &mut mask, &options, &mut scratch)
+                            .unwrap();
+                        shadow
                             .blend_rgba8(&grid, &mut pixels, &paint, &options, &mut scratch)
                             .unwrap();
+                        paint
+                            .blend_mask(&grid, &mask, &mut pixels, &mut scratch)
+                            .unwrap();
                         let bits: Vec<u32> = densities.iter().map(|d| d.to_bits()).collect();
-                        (bits, pixels)
+                        (bits, mask, pixels)
                     });
                     let drawn: Vec<_> = drawn.collect();
                     assert!(

@@ -9,9 +9,9 @@ use core::f64::consts::PI;
 use glam::DVec2;
 use libm::{exp, log, log1p};
 
-use crate::density::PixelOptions;
-use crate::density::blend::Rgba8;
+use crate::density::blend::{self, Rgba8};
 use crate::density::rounded::Rounded;
+use crate::density::{PixelOptions, Sink};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::light::Projection;
@@ -337,8 +337,8 @@ impl NinePatch {
             part(end - right, end, &mask[left as usize + 1..]);
             let (first, last) = (on_grid(start + left), on_grid(end - right));
             if first < last {
-                let density = f32::from(mask[left as usize]) / 255.0;
-                crate::density::Sink::constant(canvas, row, first as u32..last as u32, density);
+                let density = blend::density(mask[left as usize]);
+                canvas.constant(row, first as u32..last as u32, density);
             }
         }
     }
@@ -409,6 +409,49 @@ mod tests {
                 .fold(0.0, f32::max);
             // The tolerance, the mask's rounding and the canvas's.
             assert!(worst <= 2.0, "{key:?}: {worst} levels");
+        }
+    }
+
+    /// The mask of all the shadow's pixels.
+    fn stretched(patch: &NinePatch, place: PatchPlace) -> Vec<u8> {
+        let axis = |axis: usize| {
+            let [near, far] = [axis, axis + 2].map(|side| i64::from(patch.insets[side]));
+            let extent = place.max[axis] - place.min[axis];
+            let size = i64::from(patch.size[axis]);
+            (0..extent).map(move |at| {
+                let from = if at >= extent - far {
+                    at - extent + size
+                } else {
+                    at.min(near)
+                };
+                from as usize
+            })
+        };
+        let width = patch.size[0] as usize;
+        axis(1)
+            .flat_map(|y| axis(0).map(move |x| patch.mask[y * width + x]))
+            .collect()
+    }
+
+    #[test]
+    fn a_mask_is_blended_as_if_it_were_stretched_before() {
+        let mut scratch = Scratch::new();
+        let paint = Paint::new(Color::rgb(30, 60, 90), 0.6).unwrap();
+        for shadow in cards() {
+            let (key, place) = shadow.key(1.0, Tolerance::ONE_LEVEL).unwrap();
+            let patch = NinePatch::draw(&key, &mut scratch).unwrap();
+            let size = [0, 1].map(|axis| (place.max[axis] - place.min[axis]) as u32);
+            let grid = Grid::new(place.min.map(|v| v as f32), size, 1.0).unwrap();
+            let mask = stretched(&patch, place);
+            let mut pixels = vec![180; 4 * mask.len()];
+            let mut expected = pixels.clone();
+            patch
+                .blend_rgba8(place, &grid, &mut pixels, &paint, &mut scratch)
+                .unwrap();
+            paint
+                .blend_mask(&grid, &mask, &mut expected, &mut scratch)
+                .unwrap();
+            assert!(pixels == expected, "{key:?}");
         }
     }
 

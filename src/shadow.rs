@@ -418,7 +418,7 @@ impl Shadow {
         options: &PixelOptions<'_>,
         scratch: &mut Scratch,
     ) -> Result<()> {
-        let mut sink = options.onto_mask(grid, mask)?;
+        let mut sink = options.onto_mask(grid, mask, scratch.level())?;
         if plan::skip(self, grid, options, Some(1.0)).is_none() {
             density::draw(self, grid, options, scratch, &mut sink);
         }

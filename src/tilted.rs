@@ -5,6 +5,7 @@
 
 use core::ops::Range;
 
+use fearless_simd::Level;
 use glam::{DVec2, DVec3};
 
 use crate::density::{PixelOptions, tilted};
@@ -141,7 +142,7 @@ impl TiltedShadow {
     /// # Errors
     /// A buffer shorter than the grid needs, and options for another grid.
     pub fn fill_a8(&self, grid: &Grid, mask: &mut [u8], options: &PixelOptions<'_>) -> Result<()> {
-        let mut sink = options.onto_mask(grid, mask)?;
+        let mut sink = options.onto_mask(grid, mask, Level::new())?;
         tilted::fill(self, grid, options.hidden, &mut sink);
         Ok(())
     }

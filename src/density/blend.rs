@@ -1,4 +1,4 @@
-//! From densities to bytes: coverage, and paint blended onto premultiplied RGBA8.
+//! Paint blended onto premultiplied RGBA8, by densities or by coverage.
 
 use core::ops::Range;
 
@@ -8,98 +8,10 @@ use fearless_simd::{
 };
 
 use super::Sink;
+use super::dither::{Layout, thresholds};
 use super::lanes::NUMBERS;
 use crate::paint::Paint;
 use crate::tone::Color;
-
-/// Where rows are in a buffer, and which pixel of the dithering pattern the first one is.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Layout {
-    pub(crate) stride: usize,
-    /// The pattern's column and row, or none to round to the nearest.
-    pub(crate) dither: Option<[u32; 2]>,
-}
-
-/// Bayer's ordered dithering (Bayer 1973): the ranks 0 to 63 of an 8 x 8 pattern. Each 2 x 2, 4 x 4 and 8 x 8 block holds
-/// evenly spread thresholds, so a slope becomes no band wider than a few pixels.
-const BAYER: [[u8; 8]; 8] = {
-    let mut pattern = [[0; 8]; 8];
-    let mut y = 0;
-    while y < 8 {
-        let mut x = 0;
-        while x < 8 {
-            let mut rank = 0;
-            let mut bit = 0;
-            while bit < 3 {
-                let (across, down) = ((x >> bit) & 1, (y >> bit) & 1);
-                rank |= (((across ^ down) << 1) | down) << (2 * (2 - bit));
-                bit += 1;
-            }
-            pattern[y][x] = rank as u8;
-            x += 1;
-        }
-        y += 1;
-    }
-    pattern
-};
-
-/// What is added to eight pixels before their last 8 bits are cut off, in 256ths, from column `first` of row `y` on.
-#[inline(always)]
-fn thresholds(layout: &Layout, y: u32, first: u32) -> [u16; 8] {
-    match layout.dither {
-        None => [128; 8],
-        Some([left, top]) => {
-            let row = &BAYER[(y.wrapping_add(top) & 7) as usize];
-            let mut thresholds = [0; 8];
-            for (lane, threshold) in thresholds.iter_mut().enumerate() {
-                let column = first.wrapping_add(left).wrapping_add(lane as u32) & 7;
-                *threshold = u16::from(row[column as usize]) * 4 + 2;
-            }
-            thresholds
-        }
-    }
-}
-
-/// Writes densities as 8-bit coverage.
-pub(crate) struct A8<'a> {
-    pub(crate) mask: &'a mut [u8],
-    pub(crate) layout: Layout,
-}
-
-impl Sink for A8<'_> {
-    #[inline(always)]
-    fn constant(&mut self, y: u32, columns: Range<u32>, density: f32) {
-        let start = y as usize * self.layout.stride;
-        let row = &mut self.mask[start + columns.start as usize..start + columns.end as usize];
-        let thresholds = thresholds(&self.layout, y, columns.start);
-        for part in row.chunks_mut(8) {
-            for (pixel, threshold) in part.iter_mut().zip(thresholds) {
-                *pixel = pixel.saturating_add(coverage(density, threshold));
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn values(&mut self, y: u32, columns: Range<u32>, densities: &[f32]) {
-        let first = columns.start;
-        let start = y as usize * self.layout.stride + first as usize;
-        let row = &mut self.mask[start..start + columns.len()];
-        let thresholds = thresholds(&self.layout, y, first);
-        for (part, densities) in row.chunks_mut(8).zip(densities.chunks(8)) {
-            for ((pixel, density), threshold) in part.iter_mut().zip(densities).zip(thresholds) {
-                *pixel = pixel.saturating_add(coverage(*density, threshold));
-            }
-        }
-    }
-}
-
-#[inline(always)]
-fn coverage(density: f32, threshold: u16) -> u8 {
-    // Density 1 is 255 exactly, whatever the threshold.
-    ((density * 65_280.0) as u32 + u32::from(threshold))
-        .min(65_535)
-        .wrapping_shr(8) as u8
-}
 
 /// Blends paint of one colour onto premultiplied RGBA8 pixels.
 pub(crate) struct Rgba8<'a> {
@@ -129,15 +41,9 @@ const UPPER: u16 = 0xff00;
 impl Rgba8<'_> {
     /// Blends the paint by 8-bit coverage, from column `first` of row `y` on.
     pub(crate) fn coverage(&mut self, y: u32, first: u32, mask: &[u8]) {
-        const PART: usize = 128;
-        let mut densities = [0.0; PART];
-        for (part, mask) in (0..).zip(mask.chunks(PART)) {
-            for (density, coverage) in densities.iter_mut().zip(mask) {
-                *density = f32::from(*coverage) * (1.0 / 255.0);
-            }
-            let first = first + part * PART as u32;
-            self.values(y, first..first + mask.len() as u32, &densities);
-        }
+        let (layout, ink) = (&self.layout, &self.ink);
+        let pixels = from(self.pixels, layout, y, first);
+        dispatch!(self.level, simd => ink.blend_coverage(simd, pixels, mask, (layout, y, first)));
     }
 }
 
@@ -227,6 +133,54 @@ impl Ink {
             brush.blend_rest(rest, last.len(), f32x8::simd_from(simd, part));
         }
     }
+
+    /// Blends coverage onto pixels, which begin at a row and column of the layout.
+    #[inline(always)]
+    fn blend_coverage<S: Simd>(
+        &self,
+        simd: S,
+        pixels: &mut [u8],
+        mask: &[u8],
+        (layout, y, first): (&Layout, u32, u32),
+    ) {
+        let brush = Brush::new(simd, self, &thresholds(layout, y, first));
+        let (parts, last) = mask.as_chunks::<PIXELS>();
+        let (blocks, rest) = pixels.split_at_mut(BLOCK * parts.len());
+        for (block, part) in blocks.as_chunks_mut::<BLOCK>().0.iter_mut().zip(parts) {
+            brush.blend_part(block, &densities(part));
+        }
+        if !last.is_empty() {
+            let part = match mask.last_chunk() {
+                // Shifted down to the block's beginning.
+                Some(end) => {
+                    (u64::from_le_bytes(*end) >> (8 * (PIXELS - last.len()))).to_le_bytes()
+                }
+                None => {
+                    let mut part = [0; PIXELS];
+                    part[..last.len()].copy_from_slice(last);
+                    part
+                }
+            };
+            let densities = f32x8::simd_from(simd, densities(&part));
+            brush.blend_rest(rest, last.len(), densities);
+        }
+    }
+}
+
+/// The density that 8-bit coverage stands for.
+#[inline(always)]
+pub(crate) fn density(coverage: u8) -> f32 {
+    f32::from(coverage) * (1.0 / 255.0)
+}
+
+/// The densities of a block's pixels.
+#[inline(always)]
+fn densities(coverage: &[u8; PIXELS]) -> [f32; PIXELS] {
+    let mut densities = [0.0; PIXELS];
+    for (to, coverage) in densities.iter_mut().zip(coverage) {
+        *to = density(*coverage);
+    }
+    densities
 }
 
 /// Paint at hand: each of its vectors holds two channels of a block's pixels.

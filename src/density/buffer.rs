@@ -1,6 +1,10 @@
 //! Buffers of the caller's, checked and made ready to be drawn into.
 
-use super::blend::{A8, Ink, Layout, Rgba8};
+use fearless_simd::Level;
+
+use super::blend::{Ink, Rgba8};
+use super::coverage::A8;
+use super::dither::Layout;
 use super::{Each, PixelOptions, Sink};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
@@ -26,10 +30,16 @@ impl PixelOptions<'_> {
     }
 
     /// 8-bit coverage, at first 0.
-    pub(crate) fn onto_mask<'b>(&self, grid: &Grid, mask: &'b mut [u8]) -> Result<A8<'b>> {
+    pub(crate) fn onto_mask<'b>(
+        &self,
+        grid: &Grid,
+        mask: &'b mut [u8],
+        level: Level,
+    ) -> Result<A8<'b>> {
         clear(grid, mask, 0)?;
         self.check(grid)?;
         Ok(A8 {
+            level,
             mask,
             layout: self.layout(grid),
         })
