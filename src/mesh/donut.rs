@@ -1,17 +1,21 @@
 //! Meshes without what an opaque caster covers anyway.
 
+mod cut;
+
 use glam::DVec2;
 
-use super::{FACET, ShadowMesh};
+use super::{FACET, ShadowMesh, projection_circles, tangent_loops};
 use crate::error::{self, Result};
 use crate::light::Projection;
+use crate::outline::Edge;
 use crate::shadow::Shadow;
 use crate::shape::Shape;
 
 impl ShadowMesh {
-    /// The mesh without the triangles that an opaque caster hides, as seen from above: those wholly inside of `caster` and
-    /// at least `overlap` (scene units) from its edges. An overlap of one pixel leaves no light gap along an antialiased
-    /// edge. What is left is as exact as before. For translucent casters keep the whole mesh.
+    /// The mesh without what an opaque caster hides, as seen from above: the part inside of `caster` and at least `overlap`
+    /// (scene units) from its edges. Triangles that lie on both sides are cut there: along straight edges within a 200th of
+    /// the overlap, along curves within a tenth, neither of them nearer than the overlap. One pixel leaves no light gap along an
+    /// antialiased edge. What is left is the same field as before. For translucent casters keep the whole mesh.
     ///
     /// ```
     /// use penumbral::{Light, Shape, Tolerance};
@@ -29,10 +33,22 @@ impl ShadowMesh {
     pub fn without_covered(&self, caster: &Shape, overlap: f32) -> Result<Self> {
         let overlap = error::length("overlap", f64::from(overlap))?;
         let own = Shadow::project(core::slice::from_ref(caster), &Projection::in_place(0.0));
-        // Chords may lie outside of concave curves: by so much all edges count as wider.
         let flat = (overlap * OVERLAP_FLATNESS).max(own.extent() * FACET);
-        let lines: Vec<[DVec2; 2]> = own
-            .outline(flat)
+        let outline = own.outline(flat);
+        let curved = !own.is_fixed() || outline.edges().any(|edge| matches!(edge, Edge::Arc(_)));
+        // Chords may lie outside of concave curves, and curves are cut into lines twice.
+        let margin = if curved {
+            overlap + 2.0 * flat
+        } else {
+            overlap
+        };
+        let step = f64::from(f32::EPSILON) * self.largest_coordinate();
+        // What the cut leaves inside must not be nearer for its own chords and rounding.
+        let depth = (margin + ROUNDED * step) / (1.0 - CUT_FLATNESS);
+        let circles = projection_circles(&outline, depth, flat);
+        let inset = tangent_loops(&circles, 1.0, depth * CUT_FLATNESS);
+        let cut = cut::cut(self, &inset, step);
+        let lines: Vec<[DVec2; 2]> = outline
             .polygons(flat)
             .iter()
             .flat_map(|points| {
@@ -40,8 +56,20 @@ impl ShadowMesh {
                 points.iter().zip(next).map(|(&from, &to)| [from, to])
             })
             .collect();
-        // Curves are cut into lines twice.
-        let margin = overlap + 2.0 * flat;
+        // Whatever could not be cut stays whole: what is left never lacks anything.
+        Ok(cut.filtered(|triangle| {
+            !is_inside(triangle[0], &lines)
+                || lines.iter().any(|line| is_near(triangle, line, margin))
+        }))
+    }
+
+    fn largest_coordinate(&self) -> f64 {
+        let positions = self.vertices.iter().flat_map(|vertex| vertex.position);
+        f64::from(positions.fold(0.0, |largest: f32, x| largest.max(x.abs())))
+    }
+
+    /// The mesh of the triangles that are kept.
+    fn filtered(&self, keep: impl Fn(&[DVec2; 3]) -> bool) -> Self {
         let mut mesh = Self {
             vertices: Vec::new(),
             indices: Vec::new(),
@@ -49,11 +77,8 @@ impl ShadowMesh {
         };
         let mut numbers = vec![None; self.vertices.len()];
         for corners in self.indices.as_chunks::<3>().0 {
-            let triangle =
-                corners.map(|i| DVec2::from(self.vertices[i as usize].position.map(f64::from)));
-            if is_inside(triangle[0], &lines)
-                && !lines.iter().any(|line| is_near(&triangle, line, margin))
-            {
+            let at = |i: u32| DVec2::from(self.vertices[i as usize].position.map(f64::from));
+            if !keep(&corners.map(at)) {
                 continue;
             }
             for &corner in corners {
@@ -64,12 +89,18 @@ impl ShadowMesh {
                 mesh.indices.push(number);
             }
         }
-        Ok(mesh)
+        mesh
     }
 }
 
-/// How far chords may be from their curves, over the overlap.
+/// How far chords may be from the caster's curves, over the overlap.
 const OVERLAP_FLATNESS: f64 = 1.0 / 32.0;
+
+/// The same for the arcs of the cut about corners, which are as small as the overlap.
+const CUT_FLATNESS: f64 = 1.0 / 256.0;
+
+/// How far rounding may take the cut, in steps of `f32`.
+const ROUNDED: f64 = 4.0;
 
 /// Whether a ray from the point to growing x crosses an odd number of lines.
 fn is_inside(point: DVec2, lines: &[[DVec2; 2]]) -> bool {
@@ -117,27 +148,41 @@ fn distance(point: DVec2, [from, to]: &[DVec2; 2]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::HashSet;
+
     use super::*;
     use crate::light::Light;
-    use crate::path::FillRule;
+    use crate::outline::intersect_loops;
+    use crate::path::{FillRule, Path};
     use crate::tolerance::Tolerance;
 
-    fn covers(mesh: &ShadowMesh, point: DVec2) -> bool {
-        mesh.triangles().any(|corners| {
-            let [a, b, c] = corners.map(|v| DVec2::from(v.position.map(f64::from)));
-            let sides = [[a, b], [b, c], [c, a]];
-            sides
-                .iter()
-                .all(|[s, t]| (t - s).perp_dot(point - s) >= 0.0)
+    /// Where the tests' casters lie: they are 120 x 80.
+    const MIN: DVec2 = DVec2::new(30.0, 20.0);
+    const MAX: DVec2 = DVec2::new(150.0, 100.0);
+
+    fn corners(mesh: &ShadowMesh) -> impl Iterator<Item = [DVec2; 3]> {
+        let place = |corners: [super::super::MeshVertex; 3]| {
+            corners.map(|v| DVec2::from(v.position.map(f64::from)))
+        };
+        mesh.triangles().map(place)
+    }
+
+    /// The density at a point in the triangles, if it lies in one.
+    fn density(mesh: &ShadowMesh, point: DVec2) -> Option<f64> {
+        let mut found = corners(mesh).zip(mesh.triangles());
+        found.find_map(|([a, b, c], vertices)| {
+            let parts = [[b, c], [c, a], [a, b]].map(|[s, t]| (t - s).perp_dot(point - s));
+            parts.iter().all(|&part| part >= 0.0).then(|| {
+                let weighed = parts.iter().zip(vertices);
+                let sum: f64 = weighed.map(|(part, v)| part * f64::from(v.density)).sum();
+                sum / parts.iter().sum::<f64>()
+            })
         })
     }
 
     fn area(mesh: &ShadowMesh) -> f64 {
         let of = |[a, b, c]: [DVec2; 3]| (b - a).perp_dot(c - a) / 2.0;
-        let triangles = mesh.triangles();
-        triangles
-            .map(|corners| of(corners.map(|v| DVec2::from(v.position.map(f64::from)))))
-            .sum()
+        corners(mesh).map(of).sum()
     }
 
     /// The signed distance inside of a rectangle with one radius, written without any of the above.
@@ -146,59 +191,174 @@ mod tests {
         corner - q.max(DVec2::ZERO).length() - q.max_element().min(0.0)
     }
 
-    /// Checks that what is further out than the overlap stays, and gives the shares of area and triangles that stay.
-    fn check(caster: &Shape, depth: impl Fn(DVec2) -> f64, elevation: f32) -> [f64; 2] {
-        let light = Light::android(200.0).unwrap();
-        let shadow = light.cast(caster, elevation, 0.0).unwrap();
-        let mesh = shadow.mesh(Tolerance::ONE_LEVEL);
-        let donut = mesh.without_covered(caster, 1.0).unwrap();
-        let bounds = shadow.bounds().unwrap();
-        let [min, max] = [bounds.min, bounds.max].map(|p| DVec2::from(p.map(f64::from)));
-        for i in 0..80 {
-            for j in 0..80 {
-                let share = (DVec2::new(f64::from(i), f64::from(j)) + 0.5) / 80.0;
-                let point = min + (max - min) * share;
-                if depth(point) < 1.0 && covers(&mesh, point) {
-                    assert!(covers(&donut, point), "a gap at {point}");
-                }
-            }
+    /// Polygons, circles and curves, convex and not, with the signed distance inside of each.
+    fn casters() -> Vec<(&'static str, Shape, Box<dyn Fn(DVec2) -> f64>)> {
+        let ring = |x: f32, y: f32, far_x: f32, far_y: f32| {
+            vec![[x, y], [far_x, y], [far_x, far_y], [x, far_y]]
+        };
+        let rings = [
+            ring(30.0, 20.0, 150.0, 100.0),
+            ring(60.0, 40.0, 110.0, 75.0),
+        ];
+        let ell = [
+            30.0, 20.0, 150.0, 20.0, 150.0, 60.0, 90.0, 60.0, 90.0, 100.0, 30.0, 100.0,
+        ];
+        let ell = [ell.as_chunks::<2>().0.to_vec()];
+        let mut disc = Path::new();
+        for radius in [40.0, 18.0] {
+            disc.move_to([90.0 - radius, 60.0])
+                .arc_to([radius; 2], 0.0, false, true, [90.0 + radius, 60.0])
+                .arc_to([radius; 2], 0.0, false, true, [90.0 - radius, 60.0])
+                .close();
         }
-        [
-            area(&donut) / area(&mesh),
-            donut.indices.len() as f64 / mesh.indices.len() as f64,
+        let off_center = |p: DVec2| (p - DVec2::new(90.0, 60.0)).length();
+        let whole = |p| depth(p, MIN, MAX, 0.0);
+        let hole = |p| depth(p, DVec2::new(60.0, 40.0), DVec2::new(110.0, 75.0), 0.0);
+        let notch = |p| depth(p, DVec2::new(90.0, 60.0), DVec2::splat(900.0), 0.0);
+        vec![
+            (
+                "card",
+                Shape::rounded_rect(30.0, 20.0, 120.0, 80.0, 12.0).unwrap(),
+                Box::new(|p| depth(p, MIN, MAX, 12.0)),
+            ),
+            (
+                "rectangle",
+                Shape::rect(30.0, 20.0, 120.0, 80.0).unwrap(),
+                Box::new(whole),
+            ),
+            (
+                "circle",
+                Shape::circle([90.0, 60.0], 40.0).unwrap(),
+                Box::new(move |p| 40.0 - off_center(p)),
+            ),
+            (
+                "frame",
+                Shape::polygon(&rings, FillRule::EvenOdd).unwrap(),
+                Box::new(move |p| whole(p).min(-hole(p))),
+            ),
+            (
+                "L",
+                Shape::polygon(&ell, FillRule::NonZero).unwrap(),
+                Box::new(move |p| whole(p).min(-notch(p))),
+            ),
+            (
+                "ring",
+                Shape::path(&disc, FillRule::EvenOdd).unwrap(),
+                Box::new(move |p| (40.0 - off_center(p)).min(off_center(p) - 18.0)),
+            ),
         ]
     }
 
-    #[test]
-    fn nothing_that_is_seen_is_left_out() {
-        let (min, max) = (DVec2::new(30.0, 20.0), DVec2::new(150.0, 100.0));
-        let card = Shape::rounded_rect(30.0, 20.0, 120.0, 80.0, 12.0).unwrap();
-        for elevation in [1.0, 8.0, 30.0] {
-            let left = check(&card, |p| depth(p, min, max, 12.0), elevation);
-            println!("card at {elevation}: {left:.3?} of area and triangles");
-            assert!(elevation > 10.0 || left[0] < 0.5 && left[1] < 0.9);
+    fn mesh_of(caster: &Shape, elevation: f32, center: f32) -> ShadowMesh {
+        let light = Light::android(2.0 * center).unwrap();
+        let shadow = light.cast(caster, elevation, 0.0).unwrap();
+        shadow.mesh(Tolerance::ONE_LEVEL)
+    }
+
+    /// Triangles have area and meet edge to edge, but for the mesh's own edge and the cut.
+    fn check_structure(donut: &ShadowMesh, is_cut: impl Fn(DVec2) -> bool) {
+        assert!(corners(donut).all(|[a, b, c]| (b - a).perp_dot(c - a) > 0.0));
+        let mut edges = HashSet::new();
+        for &[a, b, c] in donut.indices.as_chunks::<3>().0 {
+            for edge in [[a, b], [b, c], [c, a]] {
+                assert!(edges.insert(edge), "two triangles on one side of an edge");
+            }
         }
-        let ring = |low: f32, x: f32, y: f32| vec![[low, low], [x, low], [x, y], [low, y]];
-        let rings = [ring(30.0, 150.0, 100.0), ring(60.0, 110.0, 75.0)];
-        let frame = Shape::polygon(&rings, FillRule::EvenOdd).unwrap();
-        let (outer, inner) = (DVec2::splat(30.0), DVec2::splat(60.0));
-        let left = check(
-            &frame,
-            |p| depth(p, outer, max, 0.0).min(-depth(p, inner, DVec2::new(110.0, 75.0), 0.0)),
-            6.0,
-        );
-        println!("frame: {left:.3?} of area and triangles");
-        assert!(left[1] < 0.9);
+        for &[from, to] in edges.iter().filter(|&&[a, b]| !edges.contains(&[b, a])) {
+            let ends = [from, to].map(|end| donut.vertices[end as usize]);
+            let at = ends.map(|end| DVec2::from(end.position.map(f64::from)));
+            assert!(
+                ends.iter().all(|end| end.density == 0.0) || at.into_iter().all(&is_cut),
+                "an open edge from {} to {}",
+                at[0],
+                at[1]
+            );
+        }
+    }
+
+    #[test]
+    fn what_is_hidden_goes_and_all_else_is_the_same_field() {
+        for (name, caster, depth) in casters() {
+            for (elevation, overlap) in
+                [(1.0, 1.0), (8.0, 0.25), (8.0, 1.0), (30.0, 6.0), (8.0, 0.0)]
+            {
+                let mesh = mesh_of(&caster, elevation, 100.0);
+                let donut = mesh.without_covered(&caster, overlap).unwrap();
+                let overlap = f64::from(overlap);
+                let most = overlap * 1.1 + 4e-3;
+                check_structure(&donut, |p| (overlap - 1e-4..most).contains(&depth(p)));
+                for i in 0..3600 {
+                    let share = DVec2::new(f64::from(i % 60), f64::from(i / 60)) + 0.5;
+                    let point = MIN - 20.0 + (MAX - MIN + 40.0) * share / 60.0;
+                    let left = density(&donut, point);
+                    if depth(point) < overlap {
+                        let all = density(&mesh, point);
+                        assert_eq!(left.is_some(), all.is_some(), "{name}: at {point}");
+                        let apart = left.unwrap_or(0.0) - all.unwrap_or(0.0);
+                        assert!(apart.abs() < 1e-5, "{name}: {apart} at {point}");
+                    } else if depth(point) > most {
+                        assert!(left.is_none(), "{name}: left at {point}");
+                    }
+                }
+                println!(
+                    "{name} at {elevation}, overlap {overlap}: {:.3} of the area, {} triangles of {}",
+                    area(&donut) / area(&mesh),
+                    donut.indices.len() / 3,
+                    mesh.indices.len() / 3
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn what_goes_is_all_of_the_inset_and_no_more() {
+        let caster = Shape::rect(30.0, 20.0, 120.0, 80.0).unwrap();
+        for (elevation, overlap) in [(1.0, 0.0), (4.0, 1.0), (20.0, 0.5), (60.0, 20.0)] {
+            let mesh = mesh_of(&caster, elevation, 100.0);
+            let donut = mesh.without_covered(&caster, overlap).unwrap();
+            // As far in as chords would be to stay clear of the overlap.
+            let inset = DVec2::splat(f64::from(overlap) / (1.0 - CUT_FLATNESS));
+            let (min, max) = (MIN + inset, MAX - inset);
+            let inset = [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)];
+            let gone: f64 = corners(&mesh)
+                .flat_map(|corners| intersect_loops(&[corners.to_vec()], &[inset.to_vec()]))
+                .map(|points| {
+                    let nexts = points.iter().cycle().skip(1);
+                    points
+                        .iter()
+                        .zip(nexts)
+                        .map(|(a, b)| a.perp_dot(*b))
+                        .sum::<f64>()
+                        / 2.0
+                })
+                .sum();
+            let expected = area(&mesh) - gone;
+            assert!(gone > 1000.0 && (area(&donut) - expected).abs() < 0.05);
+        }
+    }
+
+    #[test]
+    fn far_from_the_origin_nothing_is_torn() {
+        // Steps of `f32` are 1 / 128 there: every crossing moves by a visible part of a triangle.
+        for (name, caster, depth) in casters() {
+            let away = 100_000.0;
+            let moved = caster.translated([away; 2]).unwrap();
+            let mesh = mesh_of(&moved, 8.0, away + 100.0);
+            for overlap in [0.0, 0.9, 1.0, 1.3, 3.0] {
+                let donut = mesh.without_covered(&moved, overlap).unwrap();
+                let most = f64::from(overlap) * 1.1 + 0.1;
+                check_structure(&donut, |p| {
+                    (f64::from(overlap) - 0.05..most).contains(&depth(p - f64::from(away)))
+                });
+                assert!(area(&donut) < 0.7 * area(&mesh), "{name}");
+            }
+        }
     }
 
     #[test]
     fn other_casters_and_wide_overlaps_leave_all() {
         let card = Shape::rounded_rect(30.0, 20.0, 120.0, 80.0, 12.0).unwrap();
-        let shadow = Light::android(200.0)
-            .unwrap()
-            .cast(&card, 8.0, 0.0)
-            .unwrap();
-        let mesh = shadow.mesh(Tolerance::ONE_LEVEL);
+        let mesh = mesh_of(&card, 8.0, 100.0);
         let elsewhere = card.translated([500.0, 0.0]).unwrap();
         let kept = mesh.without_covered(&elsewhere, 1.0).unwrap();
         assert_eq!(kept.indices.len(), mesh.indices.len());
@@ -210,5 +370,59 @@ mod tests {
         let none = mesh.without_covered(&sheet, 1.0).unwrap();
         assert!(none.vertices.is_empty() && none.indices.is_empty());
         assert!(mesh.without_covered(&card, -1.0).is_err());
+    }
+
+    #[cfg(feature = "raster")]
+    #[test]
+    fn no_light_shows_between_shadow_and_caster() {
+        use crate::grid::Grid;
+        use tiny_skia::{Color, FillRule, Paint, PathBuilder, Pixmap, Transform};
+
+        let mut builder = PathBuilder::new();
+        builder.move_to(30.3, 20.2);
+        builder.line_to(150.1, 35.7);
+        builder.line_to(95.4, 61.9);
+        builder.quad_to(120.0, 90.0, 70.6, 99.5);
+        builder.line_to(45.2, 100.0);
+        builder.close();
+        let path = builder.finish().unwrap();
+        let caster = Shape::path(&Path::from(&path), crate::path::FillRule::NonZero).unwrap();
+        let mesh = mesh_of(&caster, 8.0, 100.0);
+        let grid = Grid::new([0.0, 0.0], [200, 140], 1.0).unwrap();
+        let mut densities = vec![0.0; 200 * 140];
+        let mut compose = |mesh: &ShadowMesh| {
+            mesh.rasterize(&grid, &mut densities).unwrap();
+            let mut pixmap = Pixmap::new(200, 140).unwrap();
+            pixmap.fill(Color::WHITE);
+            for (pixel, density) in pixmap
+                .data_mut()
+                .as_chunks_mut::<4>()
+                .0
+                .iter_mut()
+                .zip(&densities)
+            {
+                pixel[..3].fill((255.0 * (1.0 - density)).round() as u8);
+            }
+            let mut paint = Paint::default();
+            paint.set_color_rgba8(40, 120, 90, 255);
+            pixmap.fill_path(
+                &path,
+                &paint,
+                FillRule::Winding,
+                Transform::identity(),
+                None,
+            );
+            pixmap.take()
+        };
+        let donut = mesh.without_covered(&caster, 1.0).unwrap();
+        let largest = |a: &[u8], b: &[u8]| a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max();
+        let whole = compose(&mesh);
+        assert!(largest(&whole, &compose(&donut)) <= Some(1));
+        // A caster one and a half pixels larger than what is drawn lets light through: the comparison sees it.
+        let wide = [1.03, 0.0, 0.0, 1.03, -2.7, -1.8];
+        let gap = mesh
+            .without_covered(&caster.transformed(wide).unwrap(), 0.0)
+            .unwrap();
+        assert!(largest(&whole, &compose(&gap)) > Some(20));
     }
 }
