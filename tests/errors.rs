@@ -3,8 +3,8 @@
 #![expect(clippy::unwrap_used, reason = "what fails in a helper is the test")]
 
 use penumbral::{
-    Blending, Bounds, Color, Error, FillRule, Grid, Hidden, Light, Limits, MAX_SEGMENTS, Path,
-    PixelOptions, Pose, Renderer, Scene, Scratch, Shape, Surface, Tolerance, Tone,
+    Blending, Bounds, Color, Error, FillRule, Grid, Hidden, Light, Limits, MAX_SEGMENTS, Paint,
+    Path, PixelOptions, Pose, Renderer, Scene, Scratch, Shape, Surface, Tolerance, Tone,
 };
 use tiny_skia::Pixmap;
 
@@ -78,6 +78,7 @@ fn cases() -> Vec<(&'static str, Result<(), Error>, &'static str)> {
         ("PictureSize", Grid::new([0.0, 0.0], [0, 5], 1.0).map(drop), "a picture of 0 x 5 pixels: give 1 to 33554432 pixels in all"),
         ("PictureSize", Scene::new([1e6, 1e6], light()).map(drop), "a picture of 1000000 x 1000000 pixels: give 1 to 33554432 pixels in all"),
         ("BufferSize", drawn(99, None), "the buffer holds 99 bytes or pixels, the grid needs 100: allocate stride x height"),
+        ("BufferSize", Paint::new(Color::BLACK, 0.2).and_then(|paint| paint.blend_mask(&grid(), &[0; 99], &mut [0; 400], &mut Scratch::new())), "the buffer holds 99 bytes or pixels, the grid needs 100: allocate stride x height"),
         ("BufferSize", Renderer::new().render(&scene(), &mut pixmap(61)), "the buffer holds 2440 bytes or pixels, the grid needs 2400: allocate stride x height"),
         ("OtherGrid", drawn(100, Grid::new([1.0, 0.0], [10, 10], 1.0).ok()), "options.hidden was made for another grid: make it for the grid that is drawn"),
         ("NotFlat", Pose::of_corners([10.0, 20.0, 40.0, 30.0], [5.0, 9.0, 14.0, 11.0]).map(drop), "the corners' elevations miss one plane by -1: "),
