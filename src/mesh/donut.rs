@@ -191,8 +191,11 @@ mod tests {
         corner - q.max(DVec2::ZERO).length() - q.max_element().min(0.0)
     }
 
+    /// How far inside a point is.
+    type Depth = Box<dyn Fn(DVec2) -> f64>;
+
     /// Polygons, circles and curves, convex and not, with the signed distance inside of each.
-    fn casters() -> Vec<(&'static str, Shape, Box<dyn Fn(DVec2) -> f64>)> {
+    fn casters() -> Vec<(&'static str, Shape, Depth)> {
         let ring = |x: f32, y: f32, far_x: f32, far_y: f32| {
             vec![[x, y], [far_x, y], [far_x, far_y], [x, far_y]]
         };
