@@ -176,15 +176,16 @@ impl Halves {
             let halved = &mut self.halved[y * columns..][..columns];
             if y % 2 == 0 {
                 let row = tube.row(y);
-                for x in 1..columns - 1 {
-                    let middle = 0.5 * (row.densities[x - 1] + row.densities[x + 1]);
-                    halved[x] = row.is_outside(x, middle);
+                let inner = halved[1..].iter_mut().zip(row.densities.windows(3));
+                for (x, (halved, beside)) in inner.enumerate() {
+                    let middle = 0.5 * (beside[0] + beside[2]);
+                    *halved = row.is_outside(x + 1, middle);
                 }
             } else {
                 let (above, row, below) = (tube.row(y - 1), tube.row(y), tube.row(y + 1));
-                for x in 0..columns {
+                for (x, halved) in halved.iter_mut().enumerate() {
                     let middle = 0.5 * (above.densities[x] + below.densities[x]);
-                    halved[x] = row.is_outside(x, middle);
+                    *halved = row.is_outside(x, middle);
                 }
             }
         }
@@ -330,7 +331,7 @@ impl Halves {
 #[inline(always)]
 fn in_square(middle: Place, side: usize) -> [Right; 2] {
     let half = side / 2;
-    let rising = (middle[0] / side + middle[1] / side) % 2 == 0;
+    let rising = (middle[0] / side + middle[1] / side).is_multiple_of(2);
     let way = if rising { [1, -1] } else { [1, 1] };
     let back = [-way[0], -way[1]];
     let right = |way, ways| Right {

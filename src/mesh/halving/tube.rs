@@ -169,7 +169,7 @@ impl Tube {
                 let around = here[i - BEND] + here[i + BEND] + above[i] + below[i];
                 let bend = (around - 4.0 * here[i]) / 8.0;
                 let density = here[i] - bend.max(-most).min(most);
-                balanced[i] = density.max(0.0).min(1.0).max(least[i]).min(highest[i]);
+                balanced[i] = density.clamp(0.0, 1.0).max(least[i]).min(highest[i]);
             }
         }
     }
