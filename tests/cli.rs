@@ -394,6 +394,22 @@ mod mesh {
     }
 
     #[test]
+    fn quick_meshes_keep_the_tolerance_with_more_triangles() {
+        let folder = Folder::with_scene(ROW);
+        let [few, quick] = ["4", "4 --quick"].map(|how| {
+            let shadows = shadows(&folder, how);
+            assert!(
+                shadows
+                    .iter()
+                    .all(|shadow| shadow["error_levels"].as_f64().unwrap() <= 4.0)
+            );
+            let counts = shadows.iter().map(|shadow| length(&shadow["indices"]));
+            counts.sum::<usize>()
+        });
+        assert!(quick > few, "{quick} after {few}");
+    }
+
+    #[test]
     fn json_holds_one_mesh_a_surface_in_the_order_of_the_file() {
         let folder = Folder::with_scene(ROW);
         for tolerance in [0.5, 4.0, 64.0] {

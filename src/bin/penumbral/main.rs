@@ -20,7 +20,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use image::{ImageReader, Limits};
 use penumbral::plan::Method;
-use penumbral::{Image, MAX_PIXELS, MAX_SCENE_LENGTH, Scene, Tolerance};
+use penumbral::{Image, MAX_PIXELS, MAX_SCENE_LENGTH, MeshOptions, Scene, Tolerance};
 
 /// Shadows of material-style layered surfaces that state how wrong they may be, and keep to it.
 #[derive(Parser)]
@@ -73,6 +73,9 @@ enum Command {
         /// The largest error, in levels of 255.
         #[arg(long, default_value = "1", value_parser = tolerance)]
         tolerance: Tolerance,
+        /// Make them as soon as may be, of more triangles.
+        #[arg(long)]
+        quick: bool,
     },
     /// Tell of each surface's shadow on the ground how it is projected and drawn.
     Explain {
@@ -147,7 +150,12 @@ fn main() -> ExitCode {
             scene,
             output,
             tolerance,
-        } => mesh::run(&scene, &output, tolerance),
+            quick,
+        } => {
+            let options = MeshOptions::new(tolerance);
+            let options = if quick { options.quick() } else { options };
+            mesh::run(&scene, &output, options)
+        }
         Command::Explain { scene } => explain::run(&scene),
         #[cfg(feature = "lab")]
         Command::Atlas { output } => atlas::run(&output),

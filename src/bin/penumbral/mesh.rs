@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use penumbral::{ShadowMesh, Tolerance, meshes_to_svg};
+use penumbral::{MeshOptions, ShadowMesh, meshes_to_svg};
 use serde_json::json;
 
 use crate::{Failure, extension, output, read_scene};
 
-pub(crate) fn run(path: &Path, file: &Path, tolerance: Tolerance) -> Result<(), Failure> {
+pub(crate) fn run(path: &Path, file: &Path, options: MeshOptions) -> Result<(), Failure> {
     let kind = extension(file, &["svg", "json", "obj"])?;
     let scene = read_scene(path)?;
     let bar = output::progress(scene.surfaces().len(), "meshes");
@@ -16,7 +16,7 @@ pub(crate) fn run(path: &Path, file: &Path, tolerance: Tolerance) -> Result<(), 
         let shadow = scene
             .light()
             .cast(surface.shape(), surface.elevation(), 0.0);
-        meshes.push(shadow.map_err(|error| error.to_string())?.mesh(tolerance));
+        meshes.push(shadow.map_err(|error| error.to_string())?.mesh(options));
         bar.inc(1);
     }
     bar.finish_and_clear();
