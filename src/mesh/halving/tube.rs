@@ -79,7 +79,7 @@ impl Tube {
         self.size
     }
 
-    /// The density of a sample.
+    /// The density that a vertex has at a sample.
     #[inline(always)]
     pub(super) fn at(&self, [x, y]: [usize; 2]) -> f32 {
         self.balanced[y * self.size[0] + x]
