@@ -384,7 +384,14 @@ pub(crate) fn mesh(data: &[u8]) {
     };
     let levels = f32::from(4 + bytes.below(28));
     let tolerance = Tolerance::levels(levels).expect("within its range");
-    let mesh = shadow.mesh(MeshOptions::new(tolerance).with_max_vertices(2000));
+    let few = MeshOptions::new(tolerance).with_max_vertices(2000);
+    for options in [few, few.quick()] {
+        check_mesh(&shape, &shadow, options, levels);
+    }
+}
+
+fn check_mesh(shape: &Shape, shadow: &Shadow, options: MeshOptions, levels: f32) {
+    let mesh = shadow.mesh(options);
     if mesh.is_complete() {
         assert!(mesh.error_levels() <= f64::from(levels));
     }
@@ -401,7 +408,7 @@ pub(crate) fn mesh(data: &[u8]) {
     // stand for. So far off there is something of a shadow that is softer by twice that.
     let soft = (shadow.radius() == 0.0).then(|| {
         let reach = 2e-5 * shadow.bounds().map_or(0.0, extent) + 1e-5;
-        self::shadow(&[shape], reach as f32).expect("as the hard one")
+        self::shadow(core::slice::from_ref(shape), reach as f32).expect("as the hard one")
     });
     for corners in mesh.triangles().take(50) {
         let middle = [0, 1].map(|axis| {
