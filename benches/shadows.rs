@@ -10,7 +10,8 @@
 //! | `area` | a card of so many pixels' side at r = 8 | side |
 //! | `radius` | concave paths and a card on their way from narrow to wide penumbrae | shape / r |
 //! | `cards` | 100 cards on 1920 x 1080: projecting them, blending all, blending what opaque cards leave to be seen | part |
-//! | `mesh`, `raster` | a shadow's triangles at a tolerance in levels; their densities on pixels | shape (/ levels) |
+//! | `mesh` | a shadow's triangles, few or quick, at a tolerance in levels | shape / few or quick / levels |
+//! | `raster` | the densities of triangles on pixels | shape |
 //! | `mesh-into` | the same into buffers of the caller's, again (warm) and for a shadow not seen before (new) | shape / warm or new / levels |
 //! | `render` | whole pictures of scenes | scene |
 //! | `layers` | pictures of 3840 x 2160 with so many cards, side by side or piled up at random | order / cards |
@@ -37,8 +38,8 @@ use criterion::{
 };
 use penumbral::plan::Method;
 use penumbral::{
-    Color, FillRule, Grid, Hidden, Light, MeshBuffers, NinePatch, Paint, Path, PixelOptions,
-    Renderer, Scene, Scratch, Shadow, Shape, Surface, Tolerance, Tone,
+    Color, FillRule, Grid, Hidden, Light, MeshBuffers, MeshOptions, NinePatch, Paint, Path,
+    PixelOptions, Renderer, Scene, Scratch, Shadow, Shape, Surface, Tolerance, Tone,
 };
 use tiny_skia::Pixmap;
 
@@ -326,9 +327,12 @@ fn mesh(c: &mut Criterion) {
         let shadow = shadow(&shape, 10.0);
         for levels in [1.0, 4.0] {
             let tolerance = Tolerance::levels(levels).unwrap();
-            group.bench_function(BenchmarkId::new(name, levels), |b| {
-                b.iter(|| black_box(&shadow).mesh(tolerance));
-            });
+            let few = MeshOptions::new(tolerance);
+            for (way, options) in [("few", few), ("quick", few.quick())] {
+                group.bench_function(BenchmarkId::new(format!("{name}/{way}"), levels), |b| {
+                    b.iter(|| black_box(&shadow).mesh(options));
+                });
+            }
         }
     }
     group.finish();

@@ -397,7 +397,7 @@ fn check_mesh(shape: &Shape, shadow: &Shadow, options: MeshOptions, levels: f32)
     }
     let count = mesh.vertices().len();
     assert!(
-        mesh.indices().len() % 3 == 0
+        mesh.indices().len().is_multiple_of(3)
             && mesh.indices().iter().all(|index| (*index as usize) < count)
     );
     for vertex in mesh.vertices() {
