@@ -9,7 +9,7 @@ use fearless_simd::{
 
 use super::Sink;
 use super::dither::{Layout, thresholds};
-use super::lanes::NUMBERS;
+use super::lanes::{NUMBERS, last_block};
 use crate::paint::Paint;
 use crate::tone::Color;
 
@@ -122,14 +122,7 @@ impl Ink {
             brush.blend_part(block, part);
         }
         if !last.is_empty() {
-            let part = match densities[count - last.len()..].first_chunk() {
-                Some(part) => *part,
-                None => {
-                    let mut part = [0.0; PIXELS];
-                    part[..last.len()].copy_from_slice(last);
-                    part
-                }
-            };
+            let part: [f32; PIXELS] = last_block(densities, count, last.len());
             brush.blend_rest(rest, last.len(), f32x8::simd_from(simd, part));
         }
     }

@@ -9,6 +9,7 @@ use fearless_simd::{
 
 use super::Sink;
 use super::dither::{Layout, PATTERN, thresholds};
+use super::lanes::last_block;
 
 /// Writes densities as 8-bit coverage, which adds up.
 pub(crate) struct A8<'a> {
@@ -86,14 +87,7 @@ fn add_values<S: Simd>(
     for (block, part) in blocks.as_chunks_mut().0.iter_mut().zip(parts) {
         add(simd, block, steps.coverage(part));
     }
-    let part = match densities[count - last.len()..].first_chunk() {
-        Some(part) => *part,
-        None => {
-            let mut part = [0.0; PIXELS];
-            part[..last.len()].copy_from_slice(last);
-            part
-        }
-    };
+    let part = last_block(densities, count, last.len());
     add_rest(simd, rest, last.len(), steps.coverage(&part));
 }
 

@@ -21,3 +21,19 @@ pub(crate) const NUMBERS: [f32; LANES] = {
 pub(crate) fn lanes<S: Simd>(simd: S) -> f32x16<S> {
     f32x16::from_slice(simd, &NUMBERS)
 }
+
+/// The last `count` of a list's first `end` values and what is behind them, or else 0, as one block.
+#[inline(always)]
+pub(crate) fn last_block<const SIZE: usize>(
+    values: &[f32],
+    end: usize,
+    count: usize,
+) -> [f32; SIZE] {
+    let last = &values[end - count..];
+    if let Some(block) = last.first_chunk() {
+        return *block;
+    }
+    let mut block = [0.0; SIZE];
+    block[..count].copy_from_slice(&last[..count]);
+    block
+}

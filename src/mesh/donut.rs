@@ -152,6 +152,7 @@ mod tests {
 
     use super::*;
     use crate::light::Light;
+    use crate::mesh::tangents;
     use crate::outline::intersect_loops;
     use crate::path::{FillRule, Path};
     use crate::tolerance::Tolerance;
@@ -325,15 +326,8 @@ mod tests {
             let (min, max) = (MIN + inset, MAX - inset);
             let inset = [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)];
             let gone: f64 = corners(&mesh)
-                .flat_map(|corners| intersect_loops(&[corners.to_vec()], &[inset.to_vec()]))
-                .map(|points| {
-                    let nexts = points.iter().cycle().skip(1);
-                    points
-                        .iter()
-                        .zip(nexts)
-                        .map(|(a, b)| a.perp_dot(*b))
-                        .sum::<f64>()
-                        / 2.0
+                .map(|corners| {
+                    tangents::tests::area(&intersect_loops(&[corners.to_vec()], &[inset.to_vec()]))
                 })
                 .sum();
             let expected = area(&mesh) - gone;

@@ -149,7 +149,7 @@ pub(super) fn tangent_normal(
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use core::f64::consts::PI;
 
     use super::*;
@@ -164,7 +164,7 @@ mod tests {
             .collect()
     }
 
-    fn area(loops: &[Vec<DVec2>]) -> f64 {
+    pub(in crate::mesh) fn area(loops: &[Vec<DVec2>]) -> f64 {
         loops
             .iter()
             .map(|points| {

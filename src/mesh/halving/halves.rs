@@ -81,13 +81,19 @@ impl Straight {
 }
 
 impl Right {
+    /// The ends of the legs along a row and along a column.
+    #[inline(always)]
+    fn ends(&self) -> [Place; 2] {
+        [
+            moved(self.corner, [self.ways[0], 0], self.legs),
+            moved(self.corner, [0, self.ways[1]], self.legs),
+        ]
+    }
+
     /// The right angle and the ends of the longest side, in the order in which meshes turn.
     #[inline(always)]
     fn corners(&self) -> [Place; 3] {
-        let ends = [
-            moved(self.corner, [self.ways[0], 0], self.legs),
-            moved(self.corner, [0, self.ways[1]], self.legs),
-        ];
+        let ends = self.ends();
         if self.ways[0] == self.ways[1] {
             [self.corner, ends[0], ends[1]]
         } else {
@@ -111,10 +117,7 @@ impl Right {
 
     #[inline(always)]
     fn plane(&self, tube: &Tube) -> Plane {
-        let ends = [
-            moved(self.corner, [self.ways[0], 0], self.legs),
-            moved(self.corner, [0, self.ways[1]], self.legs),
-        ];
+        let ends = self.ends();
         let corner = tube.at(self.corner);
         let leg = self.legs as f32;
         let [x, y] = [self.ways[0] as f32 * leg, self.ways[1] as f32 * leg];
