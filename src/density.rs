@@ -4,7 +4,6 @@ pub(crate) mod alpha;
 mod area;
 pub(crate) mod blend;
 mod buffer;
-mod chords;
 pub(crate) mod circle;
 mod coverage;
 mod cubic;
@@ -126,7 +125,7 @@ fn draw_part(
         }
         Method::NinePatch if let Some(rounded) = nine_patch::suited(shadow, per_unit) => {
             let radius = shadow.radius() * per_unit;
-            if rounded.circle().is_some() {
+            if rounded.circle().is_some() && averaged_side(radius) == 0.0 {
                 let outline = shadow.exact_outline();
                 dispatch!(level, simd => circle::fill(simd, outline, radius, on, options, scratch, sink));
             } else {

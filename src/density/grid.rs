@@ -12,6 +12,7 @@
 //!
 //! Error: the tolerance.
 
+mod chords;
 mod disc;
 mod strips;
 
@@ -21,9 +22,9 @@ use fearless_simd::{Select, Simd, SimdBase, SimdMask, f32x16};
 
 use glam::DVec2;
 
+use self::chords::{GROUP, Height};
 use self::disc::{Disc, reach};
 use self::strips::{BLOCK, QUAD, QUADS, Strips};
-use super::chords::{GROUP, Height};
 use super::cubic;
 use super::frame::Frame;
 use super::rows::{self, Lattice, Points, Window};

@@ -1,29 +1,28 @@
 //! `nine_patch`: rounded rectangles by their sides.
 //!
 //! What a chord of the disc covers of a rounded rectangle is closed form in the x of the two sides at its height. Those are
-//! found once for every strip of the rectangle, whatever the corners' radii; a pixel takes a few operations a chord. Columns
-//! between the corners have one density a row, rows between them are all alike. Where the penumbra is wide, rows and columns are
-//! computed some pixels apart, with cubics between.
+//! found once for a row, at a few heights of the disc, whatever the corners' radii; a pixel takes a few operations for each.
+//! Columns between the corners have one density a row, rows between them are all alike. Rows and columns are computed some
+//! pixels apart where the penumbra is wide, with cubics between, and one half of the rows serves the other.
 //!
-//! Error: that of the chords and of the cubics, kept within the tolerance by their number.
+//! Error: that of the heights and of the cubics, kept within the tolerance by their number.
 
 mod columns;
+mod kernel;
 mod lattice;
+mod nodes;
 mod reach;
-mod sides;
 
 use core::ops::Range;
 
 use fearless_simd::{Simd, SimdBase, f32x16};
 
 use self::lattice::Lattice;
-use self::reach::{BLOCK, Disc, Reach};
-use self::sides::{Corners, Strips};
-use super::chords::{Chords, GROUP, Height};
+use self::nodes::Nodes;
+use self::reach::{BLOCK, Reach};
 use super::frame::Frame;
 use super::rounded::Rounded;
-use super::rows::Window;
-use super::{PixelOptions, Sink, cubic, seen_columns};
+use super::{PixelOptions, Sink, averaged_side, cubic, seen_columns};
 use crate::grid::Grid;
 use crate::scratch::Scratch;
 use crate::shadow::Shadow;
@@ -31,30 +30,34 @@ use crate::shadow::Shadow;
 /// Circles larger than this, over the penumbra radius, are told from each other by double precision only.
 const LARGEST_CIRCLE: f64 = 1024.0;
 
-/// Where a side gains more x in a group of strips, in penumbra radii, it is looked up twice in each.
-const STEEP: f64 = 0.17;
-
 /// Single precision tells a pixel's columns and rows apart from its neighbours' in rectangles up to this size, in pixels.
 const LARGEST: f64 = 32_768.0;
+
+/// The penumbra radii, in pixels, at which pixels are averages and this method serves: narrower ones are edges to it, and for wider
+/// ones few points of each pixel are enough.
+const AVERAGED: Range<f64> = 0.01..0.9;
+
+/// Where pixels are averages, chords that stand for others show in rectangles thinner than this, in pixels.
+const THINNEST: f64 = 3.0;
 
 /// The rounded rectangle or circle that a shadow is, if this method can draw it on so many pixels a scene unit.
 pub(crate) fn suited(shadow: &Shadow, per_unit: f64) -> Option<Rounded> {
     let rounded = shadow.rounded()?;
     let size = (rounded.max - rounded.min).max_element() + 2.0 * shadow.radius();
+    let radius = shadow.radius() * per_unit;
     let drawn = match rounded.circle() {
-        Some(radius) => radius <= LARGEST_CIRCLE * shadow.radius(),
-        None => size * per_unit <= LARGEST,
+        Some(circle) if averaged_side(radius) == 0.0 => circle <= LARGEST_CIRCLE * shadow.radius(),
+        _ => size * per_unit <= LARGEST,
     };
-    (drawn && shadow.radius() * per_unit >= 3.0).then_some(rounded)
+    let thinnest = (rounded.max - rounded.min).min_element() * per_unit;
+    let averaged = AVERAGED.contains(&radius) && thinnest >= THINNEST;
+    (drawn && (averaged_side(radius) == 0.0 || averaged)).then_some(rounded)
 }
 
 /// What this method leaves from drawing to drawing: memory.
 #[derive(Debug, Default)]
 pub(crate) struct NinePatchScratch {
-    chords: Chords,
-    disc: Disc,
-    /// Single strips, and groups that begin with the first strip, the second and the third.
-    strips: [Strips; 1 + GROUP as usize],
+    nodes: Nodes,
     zones: [Zone; 2],
     /// Columns of a row where they are some pixels apart.
     columns: [Vec<f32>; 2],
@@ -73,7 +76,7 @@ struct Zone {
     rows: [Vec<f32>; RING],
     which: [i64; RING],
     /// The blocks of them that were computed.
-    done: [Vec<bool>; RING],
+    done: [Range<usize>; RING],
     /// The pixels' densities where rows are apart.
     values: Vec<f32>,
 }
@@ -95,7 +98,8 @@ pub(crate) fn fill<S: Simd>(
     scratch: &mut Scratch,
     sink: &mut dyn Sink,
 ) {
-    let frame = Frame::new((rounded.min, rounded.max), radius, grid);
+    let reach = radius + averaged_side(radius) / 2.0;
+    let frame = Frame::new((rounded.min, rounded.max), reach, grid);
     // Column and row numbers are the coordinates of their pixels' centres.
     let shape = Rounded {
         min: frame.place(rounded.min) - frame.phase - 0.5,
@@ -107,20 +111,22 @@ pub(crate) fn fill<S: Simd>(
         return;
     }
     let (kept, wanted) = (&mut scratch.nine_patch, &mut scratch.wanted);
-    let lattice = Lattice::new(&shape, radius, options.tolerance.as_levels(), frame.phase.y);
-    kept.begin(simd, &shape, radius, &lattice);
-    let zones = kept.lay_out(&shape, radius, &lattice);
+    let levels = options.tolerance.as_levels();
+    let lattice = Lattice::new(&shape, radius, levels, frame.phase.y);
+    kept.nodes.begin(&shape, radius, levels);
+    let zones = kept.lay_out(&lattice);
     let middle = if zones == 2 {
         kept.zones[0].end..kept.zones[1].start
     } else {
         0..0
     };
-    let (origin, per_radius) = (frame.first[0], 1.0 / radius);
+    let origin = frame.first[0];
     while let Some(line) = lattice.next(&mut lines) {
         let y = line as f64;
-        let [above, below] =
-            [shape.min.y - y, shape.max.y - y].map(|end| Window::Disc.half(end * per_radius));
-        let between = 2.0 * (below - above);
+        let between = kept
+            .nodes
+            .kernel
+            .between([shape.min.y - y, shape.max.y - y]);
         if between <= 0.0 {
             continue;
         }
@@ -147,56 +153,13 @@ pub(crate) fn fill<S: Simd>(
 }
 
 impl NinePatchScratch {
-    /// Prepares chords and strips.
-    #[inline(always)]
-    fn begin<S: Simd>(&mut self, simd: S, shape: &Rounded, radius: f64, lattice: &Lattice) {
-        let height = lattice.height();
-        // In a strip a side is taken to be upright: a round one is not, in higher ones.
-        self.chords.set(radius, height, Height::Group);
-        self.disc.set(&self.chords);
-        let [tl, tr, br, bl] = shape.radii;
-        let from_first = |y: f64| (y - lattice.start - lattice.first as f64 * height) as f32;
-        let bottom = shape.max.y - lattice.alike as f64 * lattice.pitch;
-        let sides = [[tl, bl], [tr, br]].map(|radii| Corners {
-            top: from_first(shape.min.y),
-            bottom: from_first(bottom),
-            radii: radii.map(|radius| radius as f32),
-        });
-        // Where a circle's side gains so many pixels a strip.
-        let slope = STEEP * radius / (height * GROUP as f64);
-        let steep = |corner: f64| {
-            let depth = corner * (1.0 - slope / (1.0 + slope * slope).sqrt());
-            (depth / height) as i64 + 2
-        };
-        let end = ((bottom - shape.min.y) / height) as i64;
-        // The rectangle begins in the second group.
-        let steep = [
-            2 * GROUP + steep(tl.max(tr)),
-            end + GROUP - 1 - steep(bl.max(br)),
-        ];
-        let count = end as usize + 2 * GROUP as usize + 2;
-        let [singles, groups @ ..] = &mut self.strips;
-        singles.set(simd, count, [0, 1], height as f32, &sides);
-        singles.set_steep(steep);
-        // Where rows are groups apart, all of their groups begin alike.
-        let starts = if lattice.strips % GROUP == 0 {
-            1
-        } else {
-            GROUP as usize
-        };
-        for (first, groups) in groups.iter_mut().enumerate().take(starts) {
-            let count = count / GROUP as usize + 1;
-            groups.set(simd, count, [first, GROUP as usize], height as f32, &sides);
-            groups.set_steep(steep.map(|strip| strip / GROUP));
-        }
-    }
-
     /// Prepares the zones, two or one where discs meet both sides; their number.
-    fn lay_out(&mut self, shape: &Rounded, radius: f64, lattice: &Lattice) -> usize {
+    fn lay_out(&mut self, lattice: &Lattice) -> usize {
+        let (shape, reach) = (&lattice.shape, lattice.reach);
         let [tl, tr, br, bl] = shape.radii;
-        let left_end = shape.min.x + radius + tl.max(bl);
-        let right_start = shape.max.x - radius - tr.max(br);
-        let (first, last) = (shape.min.x - radius, shape.max.x + radius);
+        let left_end = shape.min.x + reach + tl.max(bl);
+        let right_start = shape.max.x - reach - tr.max(br);
+        let (first, last) = (shape.min.x - reach, shape.max.x + reach);
         let apart = left_end + 2.0 < right_start;
         let ranges = if apart {
             [(first, left_end), (right_start, last)]
@@ -210,9 +173,8 @@ impl NinePatchScratch {
             zone.sides = [shape.min.x, shape.max.x].map(|x| (x - zone.start as f64) as f32);
             zone.which = [NONE; RING];
             let width = ((zone.end - zone.start) as usize).next_multiple_of(2 * BLOCK);
-            for (row, done) in zone.rows.iter_mut().zip(&mut zone.done) {
+            for row in &mut zone.rows {
                 row.resize(width, 0.0);
-                done.resize(width / BLOCK, false);
             }
             zone.values.resize(width, 0.0);
         }
@@ -284,14 +246,14 @@ impl NinePatchScratch {
         let done = &mut zone.done[slot];
         if zone.which[slot] != row {
             zone.which[slot] = row;
-            done.fill(false);
-        } else if done[blocks.clone()].iter().all(|done| *done) {
+            *done = blocks.start..blocks.start;
+        } else if done.start <= blocks.start && blocks.end <= done.end {
             return slot;
         }
+        self.nodes.place(simd, &lattice.shape, lattice.y(row));
         let reach = Reach {
-            disc: &self.disc,
-            strips: &self.strips,
-            first: row * lattice.strips - lattice.first,
+            row: &self.nodes.row,
+            square: self.nodes.kernel.side as f32,
             met: zone.met,
             sides: zone.sides.map(|side| side - lattice.columns.start()),
             pitch: lattice.columns.pitch(),
@@ -302,21 +264,15 @@ impl NinePatchScratch {
             let count = columns.count(width).div_ceil(BLOCK);
             reach.compute_all(simd, 0..count, &mut self.columns[0]);
             columns.spread(simd, &mut self.columns, &mut zone.rows[slot]);
-            done.fill(true);
+            *done = 0..usize::MAX;
             return slot;
         }
-        let mut block = blocks.start;
-        while block < blocks.end {
-            let ahead = &done[block..blocks.end];
-            if ahead[0] {
-                block += 1;
-                continue;
-            }
-            let missing = ahead.iter().take_while(|done| !**done).count();
-            reach.compute_all(simd, block..block + missing, &mut zone.rows[slot]);
-            done[block..block + missing].fill(true);
-            block += missing;
+        let before = blocks.start..done.start;
+        let behind = done.end..blocks.end;
+        for missing in [before, behind] {
+            reach.compute_all(simd, missing, &mut zone.rows[slot]);
         }
+        *done = done.start.min(blocks.start)..done.end.max(blocks.end);
         slot
     }
 }

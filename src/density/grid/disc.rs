@@ -2,8 +2,8 @@
 
 use fearless_simd::{Simd, SimdBase, f32x16};
 
+use super::chords::{Chord, Chords};
 use super::strips::BLOCK;
-use crate::density::chords::{Chord, Chords, Height};
 
 /// A chord, where its row of sums begins, and how many cells from a pixel's own its ends are.
 #[derive(Debug, Clone, Copy)]
@@ -35,7 +35,7 @@ pub(super) fn reach(chord: &Chord) -> (usize, f32) {
 impl Disc {
     /// A disc of `radius` pixels on strips of `height` pixels, each cell of which has `full` steps.
     pub(super) fn set(&mut self, radius: f64, height: f64, full: f64) {
-        self.chords.set(radius, height, Height::Pair);
+        self.chords.set(radius, height);
         // In the order of the pixels' own sums, so that the umbra's density is 1.
         self.total = 0.0;
         self.reaches.clear();

@@ -3,13 +3,15 @@
 use core::ops::Range;
 
 use super::columns::Columns;
-use crate::density::chords::GROUP;
-use crate::density::cubic;
 use crate::density::rounded::Rounded;
+use crate::density::{averaged_side, cubic};
 
 /// Where rows of densities are computed.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Lattice {
+    pub(super) shape: Rounded,
+    /// How far a pixel's average reaches.
+    pub(super) reach: f64,
     /// The y of row 0, and pixels from one to the next.
     pub(super) start: f64,
     pub(super) pitch: f64,
@@ -17,15 +19,11 @@ pub(super) struct Lattice {
     pub(super) is_apart: bool,
     /// The columns that are computed of a row.
     pub(super) columns: Columns,
-    /// Strips from one to the next.
-    pub(super) strips: i64,
-    /// Rows after `straight` up to so many more are like it: they are left out of the strips.
+    /// Rows after `straight` up to so many more are like it: they are left out.
     pub(super) straight: i64,
     pub(super) alike: i64,
     /// The row of which row 0 is the likeness, if the rectangle's lower half is its upper one's.
     pub(super) mirror: Option<i64>,
-    /// The first strip.
-    pub(super) first: i64,
 }
 
 impl Lattice {
@@ -41,45 +39,37 @@ impl Lattice {
             } else {
                 NEAREST
             };
-        let (pitch, strips) = if is_apart {
-            let strips = GROUP as f64 * cubic::steps(levels) / steps;
-            (between, (strips - 0.2).ceil() as i64)
-        } else {
-            // A row for each row of pixels.
-            let strips = (ALIGNED * cubic::steps(levels) / radius - 0.1).ceil();
-            (1.0, strips.max(1.0) as i64)
-        };
+        // Otherwise a row for each row of pixels.
+        let pitch = if is_apart { between } else { 1.0 };
+        let reach = radius + averaged_side(radius) / 2.0;
         let middle = shape.min.y.midpoint(shape.max.y);
-        let half = ((middle - shape.min.y + radius) / pitch).ceil() + 1.0;
+        let half = ((middle - shape.min.y + reach) / pitch).ceil() + 1.0;
         let (start, mirror) = match (is_apart, is_mirrored) {
             (true, true) => (middle - half * pitch, Some(2 * half as i64)),
             (true, false) => (-phase - 0.5, None),
             (false, _) => (0.0, None),
         };
         let mut lattice = Self {
+            shape: *shape,
+            reach,
             start,
             pitch,
             is_apart,
             columns: Columns::apart(radius / (CLOSER * columns)),
-            strips,
             mirror,
             straight: 0,
             alike: 0,
-            first: 0,
         };
-        let reach = radius + 2.0 * lattice.height();
         let first = lattice.row_at(shape.min.y + tl.max(tr) + reach).ceil() as i64;
         let last = lattice.row_at(shape.max.y - bl.max(br) - reach).floor() as i64;
         (lattice.straight, lattice.alike) = (first, (last - first).max(0));
-        let top = (shape.min.y - lattice.start) / lattice.height();
-        // Chords that begin above the rectangle may end within it.
-        lattice.first = ((top / GROUP as f64).floor() as i64 - 1) * GROUP;
         lattice
     }
 
-    /// The height of a strip, in pixels.
-    pub(super) fn height(&self) -> f64 {
-        self.pitch / self.strips as f64
+    /// The y of a row among those left.
+    pub(super) fn y(&self, row: i64) -> f64 {
+        let left_out = if row > self.straight { self.alike } else { 0 };
+        self.start + (row + left_out) as f64 * self.pitch
     }
 
     /// Where among the rows a y is.
@@ -112,42 +102,46 @@ impl Lattice {
     }
 }
 
-/// Strips where each row of pixels is computed, over the rows that cubics between them would need: without cubics fewer
-/// are enough.
-const ALIGNED: f64 = 2.0;
-
 /// Columns are so many times as close to each other as rows.
-const CLOSER: f64 = 1.15;
+const CLOSER: f64 = 1.4;
 
 /// Rows nearer to each other than this, in pixels, are not worth interpolating between.
-const NEAREST: f64 = 1.25;
+const NEAREST: f64 = 1.15;
 
 /// The same where the rows of one half serve both.
-const NEAREST_MIRRORED: f64 = 0.8;
+const NEAREST_MIRRORED: f64 = 0.65;
+
+/// Rows over those of [`cubic::steps`]: the sum over heights takes less of the tolerance than chords do. Of 24,000 random
+/// rectangles at tolerances of 0.5 to 4 levels none passed 0.96 of it.
+const ROWS: f64 = 0.8;
 
 /// The columns and the rows a penumbra radius for a tolerance. Two of the penumbra's ends may meet on a middle line; and where a disc
 /// nearly fills its corner's circle, the density has a tip at that circle's centre that cubics between few rows do not
 /// hold, the less the more such centres are in one place.
 fn steps(shape: &Rounded, radius: f64, levels: f64) -> [f64; 2] {
-    let steps = cubic::steps(levels);
+    let steps = ROWS * cubic::steps(levels);
     let near = |distance: f64| distance.abs() < 4.0 * radius / steps;
     let size = shape.max - shape.min;
     let [tl, tr, br, bl] = shape.radii;
-    let mut tip = 0.0;
-    if shape
-        .radii
-        .iter()
-        .any(|corner| (0.8..1.35).contains(&(corner / radius)))
-    {
-        let across = near(size.x - tl - tr) || near(size.x - bl - br);
-        let down = near(size.y - tl - bl) || near(size.y - tr - br);
-        tip = TIP / levels * [1.0, 2.0, 4.0][usize::from(across) + usize::from(down)];
-    }
+    let tips = shape.radii.map(|corner| tip(corner / radius));
+    let across = near(size.x - tl - tr) || near(size.x - bl - br);
+    let down = near(size.y - tl - bl) || near(size.y - tr - br);
+    let together = [1.0, 2.0, 4.0][usize::from(across) + usize::from(down)];
+    let tip = tips.into_iter().fold(0.0, f64::max) / levels * together;
     [size.x, size.y].map(|size| {
         let ends = if near(size - 2.0 * radius) { 2.0 } else { 1.0 };
-        cubic::steps(levels / ends).max(tip)
+        (ROWS * cubic::steps(levels / ends)).max(tip)
     })
 }
 
-/// The error at a tip, in levels, times the rows a penumbra radius.
-const TIP: f64 = 20.0;
+/// The error at the tip of a corner's circle, in levels, times the rows a penumbra radius; `ratio` is the circle's radius over the
+/// penumbra's.
+fn tip(ratio: f64) -> f64 {
+    if (0.8..1.35).contains(&ratio) {
+        20.0
+    } else if (0.5..1.45).contains(&ratio) {
+        13.0
+    } else {
+        0.0
+    }
+}

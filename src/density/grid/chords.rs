@@ -7,7 +7,7 @@
 //! of three and of six heights where the profile is straighter: all of the three errors are below 0.35 level at 36 strips a radius.
 
 /// How many strips of the lowest height a chord is high.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Height {
     Strip,
     Group,
@@ -57,8 +57,8 @@ fn half_area(t: f64) -> f64 {
 }
 
 impl Chords {
-    /// Those of a disc of `radius` pixels, for strips of `height` pixels; none is higher than `highest`.
-    pub(super) fn set(&mut self, radius: f64, height: f64, highest: Height) {
+    /// Those of a disc of `radius` pixels, for strips of `height` pixels.
+    pub(super) fn set(&mut self, radius: f64, height: f64) {
         let half = (radius / height - 1e-9).ceil() as i64;
         self.half = half;
         self.all.clear();
@@ -69,9 +69,6 @@ impl Chords {
             (GROUPS, Height::Group),
             (1.0, Height::Strip),
         ] {
-            if kind > highest {
-                continue;
-            }
             let count = kind.strips();
             let fits = |end: i64| {
                 end as f64 * height <= until * radius || kind == Height::Strip && end <= half
