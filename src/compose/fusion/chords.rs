@@ -18,10 +18,8 @@ use crate::density::quadrature;
 /// Into so many equal angles the disc's height is cut, and again wherever an outline has a top, a bottom or a level edge.
 const PIECES: u32 = 12;
 
-/// Along an outline that runs by more than this for each step up, chords change faster than pieces tell: there the height is cut
-/// into steps of `SLANTED_STEP` over the square root of that slope. Cuts are where a hidden part begins or ends with a slope
-/// that two chords a piece do not see, an error of about 4 slope h² levels for a piece of height h.
-const SLANTED: f64 = 1.0;
+/// Along slanted edges the height is cut into steps of this over the square root of their slope. Cuts are where a hidden part
+/// begins or ends with a slope that two chords a piece do not see, an error of about 4 slope h² levels for a piece of height h.
 const SLANTED_STEP: f64 = 0.2;
 
 /// A loop of a caster near some points of a row.
@@ -366,11 +364,8 @@ impl Part<'_> {
                 out.push(asin(v));
             }
         }
-        for [from, to] in &self.of_loop.edges {
+        for [from, to] in &self.of_loop.slanted {
             let slope = (to.x - from.x) / (to.y - from.y);
-            if slope.abs() <= SLANTED {
-                continue;
-            }
             // Where between its ends it is near.
             let ends = [left, right].map(|x| from.y + (x - from.x) / slope);
             let low = height(from.y.max(ends[0].min(ends[1]))).max(-1.0);
@@ -386,6 +381,10 @@ impl Part<'_> {
 
 /// The first node that is not below a height, by way of one that is near to it.
 fn first_from(nodes: &[Node], height: f64, near: usize) -> usize {
+    // Most edges pass the disc.
+    if height.abs() >= 1.0 {
+        return if height < 0.0 { 0 } else { nodes.len() };
+    }
     let mut first = near;
     while first > 0 && nodes[first - 1].height >= height {
         first -= 1;
