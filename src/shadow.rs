@@ -378,11 +378,11 @@ impl Shadow {
         }
     }
 
-    /// The outline for pixels of side `pixel`, with lines that move no density by more than `levels`. It is kept for one size of
-    /// pixels.
+    /// The outline for pixels of side `pixel`, with lines that move no density by more than `levels`, kept for one size of pixels; the
+    /// exact one where there are none.
     pub(crate) fn drawn_outline(&self, levels: f64, pixel: f64) -> Cow<'_, Outline> {
-        if self.curved.is_empty() {
-            return Cow::Borrowed(&self.fixed);
+        if self.curved.is_empty() || pixel == 0.0 {
+            return Cow::Borrowed(self.exact_outline());
         }
         let needed = density::flatness(levels, self.radius, pixel);
         let make = || self.outline(needed).into_owned();

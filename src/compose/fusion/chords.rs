@@ -120,7 +120,14 @@ impl Chords {
                 let mut crossed = [0; 2];
                 for edge in of_loop.edges.iter().filter(meets) {
                     for (node, point) in crossed.iter_mut().zip(edge) {
-                        *node = first_from(&self.nodes, (point.y - at.y) / radius, *node);
+                        // Most edges pass the disc.
+                        *node = if point.y <= low {
+                            0
+                        } else if point.y >= high {
+                            self.nodes.len()
+                        } else {
+                            first_from(&self.nodes, (point.y - at.y) / radius, *node)
+                        };
                     }
                     let [first, end] = crossed;
                     if first < end {
@@ -364,7 +371,12 @@ impl Part<'_> {
                 out.push(asin(v));
             }
         }
+        let (lowest, highest) = (self.at.y - self.radius, self.at.y + self.radius);
         for [from, to] in &self.of_loop.slanted {
+            let is_beside = from.x.max(to.x) < left || from.x.min(to.x) > right;
+            if is_beside || to.y <= lowest || from.y >= highest {
+                continue;
+            }
             let slope = (to.x - from.x) / (to.y - from.y);
             // Where between its ends it is near.
             let ends = [left, right].map(|x| from.y + (x - from.x) / slope);
@@ -381,10 +393,6 @@ impl Part<'_> {
 
 /// The first node that is not below a height, by way of one that is near to it.
 fn first_from(nodes: &[Node], height: f64, near: usize) -> usize {
-    // Most edges pass the disc.
-    if height.abs() >= 1.0 {
-        return if height < 0.0 { 0 } else { nodes.len() };
-    }
     let mut first = near;
     while first > 0 && nodes[first - 1].height >= height {
         first -= 1;
