@@ -2,33 +2,37 @@
 
 use glam::DVec2;
 
-/// Sorts boxed items into groups, each apart from all others: a group's boxes overlap or touch in a chain.
+/// Sorts boxed items into groups that are apart from each other: a group's boxes overlap or touch in a chain. The boxes around two
+/// groups may overlap.
 pub(crate) fn overlapping<T>(mut boxed: Vec<(DVec2, DVec2, T)>) -> Vec<Vec<T>> {
-    let mut open: Vec<(DVec2, DVec2, Vec<T>)> = Vec::new();
-    boxed.sort_by(|a, b| {
-        let key = |s: &(DVec2, DVec2, T)| (s.0.x, s.0.y);
-        key(a)
-            .partial_cmp(&key(b))
-            .unwrap_or(core::cmp::Ordering::Equal)
-    });
-    let mut groups = Vec::new();
-    for (min, max, item) in boxed {
-        let (mut min, mut max, mut group) = (min, max, vec![item]);
-        let mut index = 0;
-        while index < open.len() {
-            if open[index].1.x < min.x {
-                groups.push(open.swap_remove(index).2);
-            } else if open[index].0.y <= max.y && open[index].1.y >= min.y {
-                let (other_min, other_max, members) = open.swap_remove(index);
-                // The grown box may meet groups that were passed over.
-                (min, max, index) = (min.min(other_min), max.max(other_max), 0);
-                group.splice(0..0, members);
-            } else {
-                index += 1;
+    boxed.sort_by(|a, b| a.0.x.total_cmp(&b.0.x).then(a.0.y.total_cmp(&b.0.y)));
+    // Of each box another one of its group, or itself; from box to box all come to the group's first.
+    let mut leaders: Vec<usize> = Vec::with_capacity(boxed.len());
+    let mut open: Vec<usize> = Vec::new();
+    for (index, (min, max, _)) in boxed.iter().enumerate() {
+        leaders.push(index);
+        open.retain(|&other| boxed[other].1.x >= min.x);
+        for &other in &open {
+            if boxed[other].0.y <= max.y && boxed[other].1.y >= min.y {
+                let (a, b) = (first(&mut leaders, other), first(&mut leaders, index));
+                leaders[a.max(b)] = a.min(b);
             }
         }
-        open.push((min, max, group));
+        open.push(index);
     }
-    groups.extend(open.into_iter().map(|(_, _, group)| group));
+    let mut groups: Vec<Vec<T>> = boxed.iter().map(|_| Vec::new()).collect();
+    for (index, (_, _, item)) in boxed.into_iter().enumerate() {
+        groups[first(&mut leaders, index)].push(item);
+    }
+    groups.retain(|group| !group.is_empty());
     groups
+}
+
+/// The first box of a group.
+fn first(leaders: &mut [usize], mut index: usize) -> usize {
+    while leaders[index] != index {
+        leaders[index] = leaders[leaders[index]];
+        index = leaders[index];
+    }
+    index
 }

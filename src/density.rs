@@ -99,7 +99,7 @@ pub(crate) fn draw(
     scratch: &mut Scratch,
     sink: &mut dyn Sink,
 ) {
-    for part in shadow.parts(grid.pixels_per_unit()) {
+    for part in shadow.parts_on(grid, 0.0) {
         draw_part(part, grid, options, scratch, sink);
     }
 }

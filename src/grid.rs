@@ -103,6 +103,13 @@ impl Grid {
         self.corner
     }
 
+    /// Whether a box may meet any of its pixels, in pixels from the scene's origin.
+    pub(crate) fn meets(&self, (min, max): (DVec2, DVec2)) -> bool {
+        let end = self.corner + DVec2::new(f64::from(self.width), f64::from(self.height));
+        // A pixel to spare for rounding.
+        min.cmple(end + 1.0).all() && max.cmpge(self.corner - 1.0).all()
+    }
+
     /// Whether another grid has the same pixels, in whatever buffer.
     pub(crate) fn has_pixels_of(&self, other: &Self) -> bool {
         let pixels = |grid: &Self| (grid.corner, grid.width, grid.height, grid.pixels_per_unit);

@@ -147,7 +147,9 @@ impl Hidden {
     #[inline(always)]
     pub(crate) fn seen(&self, row: u32, columns: Range<u32>, mut see: impl FnMut(Range<u32>)) {
         let mut start = columns.start;
-        for span in self.of_row(row) {
+        let spans = self.of_row(row);
+        let first = spans.partition_point(|span| span.end <= start);
+        for span in &spans[first..] {
             if span.start >= columns.end {
                 break;
             }

@@ -11,7 +11,7 @@ use glam::{DAffine2, DVec2};
 
 use crate::apart::overlapping;
 use crate::density::rounded::Rounded;
-use crate::density::{self, PixelOptions};
+use crate::density::{self, PixelOptions, averaged_side};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::light::Projection;
@@ -30,6 +30,8 @@ pub struct Shadow {
     fixed: Outline,
     /// The shapes that need flattening, projected; those that may overlap together.
     curved: Vec<Vec<Shape>>,
+    /// A box that holds its outline.
+    hull: Option<(DVec2, DVec2)>,
     /// The outline as exact as `density_at` promises, made when it is first needed.
     exact: OnceLock<Outline>,
     /// The outline for pixels as it was first asked for, and how far its lines are from their curves.
@@ -138,11 +140,8 @@ impl Shadow {
 
     /// Loops whose shadows are apart are drawn by what suits each best.
     fn find_parts(&mut self) {
-        self.rounded = None;
         self.parts.clear();
-        if self.curved.is_empty() {
-            self.rounded = Rounded::of(&self.fixed);
-        }
+        self.measure();
         // No pixel is to see two parts: their densities would be rounded twice. A narrow penumbra is averaged over pixels.
         let reach = if self.radius < 3.0 {
             self.radius + 1.0
@@ -178,12 +177,22 @@ impl Shadow {
                         Piece::Shapes(shapes) => part.curved.push(shapes),
                     }
                 }
-                if part.curved.is_empty() {
-                    part.rounded = Rounded::of(&part.fixed);
-                }
+                part.measure();
                 part
             })
             .collect();
+    }
+
+    /// Finds what is asked for again and again.
+    fn measure(&mut self) {
+        let curved = self.curved.iter().flatten().filter_map(Shape::hull);
+        let hulls = self.fixed.bounds().into_iter().chain(curved);
+        self.hull = hulls.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+        self.rounded = if self.curved.is_empty() {
+            Rounded::of(&self.fixed)
+        } else {
+            None
+        };
     }
 
     /// The shadows that this one is drawn as on pixels of which there are so many a scene unit.
@@ -196,6 +205,16 @@ impl Shadow {
     }
 
     /// The same outline seen through another penumbra radius.
+    /// Those of [`Self::parts`] that a grid may show, or one that is larger by a `margin` of so many pixels.
+    pub(crate) fn parts_on(&self, grid: &Grid, margin: f64) -> impl Iterator<Item = &Self> {
+        let per_unit = grid.pixels_per_unit();
+        let is_shown = move |part: &&Self| {
+            let reach = part.reach(per_unit);
+            reach.is_some_and(|(min, max)| grid.meets((min - margin, max + margin)))
+        };
+        self.parts(per_unit).iter().filter(is_shown)
+    }
+
     pub(crate) fn with_radius(&self, radius: f64) -> Self {
         let mut shadow = Self {
             radius,
@@ -239,9 +258,15 @@ impl Shadow {
 
     /// A box that holds the outline, in scene units.
     pub(crate) fn hull(&self) -> Option<(DVec2, DVec2)> {
-        let curved = self.curved.iter().flatten().filter_map(Shape::hull);
-        let hulls = self.fixed.bounds().into_iter().chain(curved);
-        hulls.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+        self.hull
+    }
+
+    /// The box of the pixels that see it, in pixels of which there are so many a scene unit.
+    pub(crate) fn reach(&self, per_unit: f64) -> Option<(DVec2, DVec2)> {
+        let radius = self.radius * per_unit;
+        let reach = radius + averaged_side(radius) / 2.0;
+        let (min, max) = self.hull?;
+        Some((min * per_unit - reach, max * per_unit + reach))
     }
 
     /// The penumbra radius r, in scene units: how far from the outline the penumbra reaches, both ways.
@@ -353,13 +378,13 @@ impl Shadow {
         }
     }
 
-    /// The outline for pixels of side `pixel`, as a whole: the exact one unless its lines would be much finer than a pixel
-    /// needs. Both are kept, the second for one size of pixels.
-    fn drawn_outline(&self, levels: f64, pixel: f64) -> Cow<'_, Outline> {
-        let needed = density::flatness(levels, self.radius, pixel);
-        if needed <= density::flatness(levels, self.radius, 0.0) {
+    /// The outline for pixels of side `pixel`, with lines that move no density by more than `levels`, kept for one size of pixels; the
+    /// exact one where there are none.
+    pub(crate) fn drawn_outline(&self, levels: f64, pixel: f64) -> Cow<'_, Outline> {
+        if self.curved.is_empty() || pixel == 0.0 {
             return Cow::Borrowed(self.exact_outline());
         }
+        let needed = density::flatness(levels, self.radius, pixel);
         let make = || self.outline(needed).into_owned();
         let (kept, outline) = self.drawn.get_or_init(|| (needed, make()));
         if *kept == needed {

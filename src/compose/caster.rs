@@ -52,10 +52,7 @@ impl AnyShadow {
     /// The box of the pixels that see the shadow, in pixels of which there are so many a scene unit.
     pub(crate) fn reach(&self, per_unit: f64) -> Option<(DVec2, DVec2)> {
         let (min, max, radius) = match self {
-            Self::Level(shadow) => {
-                let (min, max) = shadow.hull()?;
-                (min, max, shadow.radius())
-            }
+            Self::Level(shadow) => return shadow.reach(per_unit),
             // Its circles are within the box already.
             Self::Tilted(shadow) => {
                 let (min, max) = shadow.hull()?;

@@ -66,23 +66,10 @@ impl Scene {
                 boxes.push(self.on_pixels(min, max));
             }
         }
-        let boxed = boxes
-            .into_iter()
-            .filter(|(min, max)| min.cmplt(canvas.1).all() && max.cmpgt(canvas.0).all())
-            .map(|(min, max)| (min, max, (min, max)));
-        let whole = |group: Vec<(DVec2, DVec2)>| {
-            let grown = group
-                .into_iter()
-                .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
-            Some(Bounds::outwards(
-                grown.0.max(canvas.0),
-                grown.1.min(canvas.1),
-            ))
-        };
-        Ok(overlapping(boxed.collect())
-            .into_iter()
-            .filter_map(whole)
-            .collect())
+        boxes.retain(|(min, max)| min.cmplt(canvas.1).all() && max.cmpgt(canvas.0).all());
+        let boxes = disjoint(boxes).into_iter();
+        let shown = boxes.map(|(min, max)| Bounds::outwards(min.max(canvas.0), max.min(canvas.1)));
+        Ok(shown.collect())
     }
 
     /// A box grown to whole pixels, and by one: a pixel may see beyond its own square.
@@ -92,5 +79,23 @@ impl Scene {
             ((min * scale).floor() - 1.0) / scale,
             ((max * scale).ceil() + 1.0) / scale,
         )
+    }
+}
+
+/// Boxes that hold others, no two of which overlap.
+fn disjoint(mut boxes: Vec<(DVec2, DVec2)>) -> Vec<(DVec2, DVec2)> {
+    loop {
+        let count = boxes.len();
+        let boxed = boxes.into_iter().map(|(min, max)| (min, max, (min, max)));
+        let around = |group: Vec<(DVec2, DVec2)>| {
+            let boxes = group.into_iter();
+            boxes.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+        };
+        let groups = overlapping(boxed.collect()).into_iter();
+        boxes = groups.filter_map(around).collect();
+        // Boxes around groups may overlap anew.
+        if boxes.len() == count {
+            return boxes;
+        }
     }
 }

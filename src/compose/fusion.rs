@@ -112,10 +112,14 @@ impl Fusion {
         if self.pixels.is_empty() {
             return;
         }
-        let scale = grid.pixels_per_unit();
-        let members = group.iter().filter_map(|cast| Member::new(cast, scale));
-        let members: Vec<Member> = members.collect();
+        let members: Vec<Member> = if self.pixels.are_shared() {
+            let members = group.iter().filter_map(|cast| Member::new(cast, grid));
+            members.collect()
+        } else {
+            Vec::new()
+        };
         let mut companies = Companies::new();
+        self.meet.begin();
         for (row, y) in rows.enumerate() {
             let start = grid.corner() + DVec2::new(f64::from(columns.start), f64::from(y));
             let at = row * width..(row + 1) * width;

@@ -47,7 +47,7 @@ struct Layer {
     fill: Fill,
     weight: f32,
     is_shaded: bool,
-    /// The pixels that it may touch, and where among those that are drawn they begin.
+    /// The pixels that show it, and where among those that are drawn they begin.
     grid: Grid,
     first: [u32; 2],
 }
@@ -267,18 +267,16 @@ impl Renderer {
         };
         self.cover.clear();
         self.cover.resize(self.topmost.len(), 1.0);
-        if self.is_visible(&ground, window) {
+        if self.topmost.contains(&0) {
             self.draw_layer(job, &ground, window, pixmap)?;
         }
         progress(1, layers)?;
         for (index, &surface) in stage.order.iter().enumerate() {
-            let image = job.images[index].as_ref();
-            let layer = layer(scene, surface, image, index as u32 + 1, window)?;
             #[cfg_attr(
                 not(feature = "finish"),
                 expect(unused_mut, reason = "a finish is found late")
             )]
-            if let Some(mut layer) = layer.filter(|layer| self.is_visible(layer, window)) {
+            if let Some(mut layer) = self.layer(job, index, window)? {
                 self.find_cover(surface, &layer);
                 #[cfg(feature = "finish")]
                 if let Some(finished) = &job.finishes[index] {
@@ -296,8 +294,13 @@ impl Renderer {
         self.topmost.clear();
         self.topmost
             .resize(grid.width() as usize * grid.height() as usize, 0);
+        let scale = grid.pixels_per_unit();
+        let is_on_grid = |surface: &Surface| {
+            let hull = surface.hull();
+            hull.is_some_and(|(min, max)| grid.meets((min * scale, max * scale)))
+        };
         for (index, &surface) in stage.order.iter().enumerate() {
-            if surface.is_opaque() {
+            if surface.is_opaque() && is_on_grid(surface) {
                 let rank = index as u32 + 1;
                 let mut sink = Each {
                     pixels: &mut self.topmost,
@@ -340,14 +343,74 @@ impl Renderer {
         );
     }
 
-    /// Whether anything of the layer is seen.
-    fn is_visible(&self, layer: &Layer, window: &Window) -> bool {
-        let [left, top] = layer.first;
-        (top..top + layer.grid.height()).any(|row| {
-            let start = (row * window.grid.width() + left) as usize;
-            let pixels = &self.topmost[start..start + layer.grid.width() as usize];
-            pixels.iter().any(|&rank| rank <= layer.rank)
-        })
+    /// A surface, the one at that index of their order, as far as it is seen in the window, or none.
+    fn layer(&self, job: &Job<'_>, index: usize, window: &Window) -> Result<Option<Layer>> {
+        let (surface, rank) = (job.stage.order[index], index as u32 + 1);
+        let Some(receiver) =
+            Receiver::surface(job.scene, surface).filter(|_| surface.weight() > 0.0)
+        else {
+            return Ok(None);
+        };
+        let scale = window.grid.pixels_per_unit();
+        let touched =
+            [(0, &window.columns), (1, &window.rows)].map(|(axis, seen): (usize, &Range<u32>)| {
+                let [first, end] = [
+                    (receiver.min * scale).floor(),
+                    (receiver.max * scale).ceil(),
+                ]
+                .map(|v: DVec2| (v[axis] as u32).clamp(seen.start, seen.end) - seen.start);
+                first..end
+            });
+        let [columns, rows] = self.seen(touched, rank, window);
+        if columns.is_empty() || rows.is_empty() {
+            return Ok(None);
+        }
+        let first = [columns.start, rows.start];
+        let grid = window.grid.window(first, [columns.end, rows.end]);
+        let fill = match (surface.form(), &job.images[index]) {
+            (Form::Image(_, place), Some(image)) => {
+                Fill::Texture(Texture::new(image, place, &grid)?)
+            }
+            _ => Fill::Color(surface.fill()),
+        };
+        Ok(Some(Layer {
+            receiver,
+            rank,
+            fill,
+            weight: surface.weight(),
+            is_shaded: surface.receives(),
+            grid,
+            first,
+        }))
+    }
+
+    /// The columns and rows of the window around those pixels of some columns and rows in which a layer is seen.
+    fn seen(
+        &self,
+        [columns, rows]: [Range<u32>; 2],
+        rank: u32,
+        window: &Window,
+    ) -> [Range<u32>; 2] {
+        let is_seen = |topmost: &u32| *topmost <= rank;
+        let (mut left, mut right) = (columns.end, columns.start);
+        let (mut top, mut bottom) = (rows.end, rows.start);
+        for row in rows {
+            let start = row as usize * window.grid.width() as usize;
+            let pixels =
+                &self.topmost[start + columns.start as usize..start + columns.end as usize];
+            let ends = (
+                pixels.iter().position(is_seen),
+                pixels.iter().rposition(is_seen),
+            );
+            if let (Some(first), Some(last)) = ends {
+                (left, right) = (
+                    left.min(columns.start + first as u32),
+                    right.max(columns.start + last as u32 + 1),
+                );
+                (top, bottom) = (top.min(row), row + 1);
+            }
+        }
+        [left..right, top..bottom]
     }
 
     fn draw_layer(
@@ -464,45 +527,4 @@ fn finishes<'a>(scene: &'a Scene, stage: &Stage<'a>) -> Result<Vec<Option<Finish
         finish.map(on).transpose()
     });
     finished.collect()
-}
-
-fn layer(
-    scene: &Scene,
-    surface: &Surface,
-    image: Option<&Pixmap>,
-    rank: u32,
-    window: &Window,
-) -> Result<Option<Layer>> {
-    let Some(receiver) = Receiver::surface(scene, surface).filter(|_| surface.weight() > 0.0)
-    else {
-        return Ok(None);
-    };
-    let scale = window.grid.pixels_per_unit();
-    let [columns, rows] =
-        [(0, &window.columns), (1, &window.rows)].map(|(axis, seen): (usize, &Range<u32>)| {
-            let [first, end] = [
-                (receiver.min * scale).floor(),
-                (receiver.max * scale).ceil(),
-            ]
-            .map(|v: DVec2| (v[axis] as u32).clamp(seen.start, seen.end) - seen.start);
-            first..end
-        });
-    if columns.is_empty() || rows.is_empty() {
-        return Ok(None);
-    }
-    let first = [columns.start, rows.start];
-    let grid = window.grid.window(first, [columns.end, rows.end]);
-    let fill = match (surface.form(), image) {
-        (Form::Image(_, place), Some(image)) => Fill::Texture(Texture::new(image, place, &grid)?),
-        _ => Fill::Color(surface.fill()),
-    };
-    Ok(Some(Layer {
-        receiver,
-        rank,
-        fill,
-        weight: surface.weight(),
-        is_shaded: surface.receives(),
-        grid,
-        first,
-    }))
 }

@@ -93,10 +93,11 @@ pub(crate) fn chords_between(from: f64, to: f64) -> [Chord; 2] {
     let half = (to - from) / 2.0;
     [-GAUSS_2, GAUSS_2].map(|node| {
         let angle = from + half + node * half;
+        let half_length = cos(angle);
         Chord {
             height: sin(angle),
-            half: cos(angle),
-            weight: half * cos(angle) * FRAC_1_PI,
+            half: half_length,
+            weight: half * half_length * FRAC_1_PI,
         }
     })
 }

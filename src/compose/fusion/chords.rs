@@ -18,10 +18,8 @@ use crate::density::quadrature;
 /// Into so many equal angles the disc's height is cut, and again wherever an outline has a top, a bottom or a level edge.
 const PIECES: u32 = 12;
 
-/// Along an outline that runs by more than this for each step up, chords change faster than pieces tell: there the height is cut
-/// into steps of `SLANTED_STEP` over the square root of that slope. Cuts are where a hidden part begins or ends with a slope
-/// that two chords a piece do not see, an error of about 4 slope h² levels for a piece of height h.
-const SLANTED: f64 = 1.0;
+/// Along slanted edges the height is cut into steps of this over the square root of their slope. Cuts are where a hidden part
+/// begins or ends with a slope that two chords a piece do not see, an error of about 4 slope h² levels for a piece of height h.
 const SLANTED_STEP: f64 = 0.2;
 
 /// A loop of a caster near some points of a row.
@@ -122,7 +120,14 @@ impl Chords {
                 let mut crossed = [0; 2];
                 for edge in of_loop.edges.iter().filter(meets) {
                     for (node, point) in crossed.iter_mut().zip(edge) {
-                        *node = first_from(&self.nodes, (point.y - at.y) / radius, *node);
+                        // Most edges pass the disc.
+                        *node = if point.y <= low {
+                            0
+                        } else if point.y >= high {
+                            self.nodes.len()
+                        } else {
+                            first_from(&self.nodes, (point.y - at.y) / radius, *node)
+                        };
                     }
                     let [first, end] = crossed;
                     if first < end {
@@ -366,11 +371,13 @@ impl Part<'_> {
                 out.push(asin(v));
             }
         }
-        for [from, to] in &self.of_loop.edges {
-            let slope = (to.x - from.x) / (to.y - from.y);
-            if slope.abs() <= SLANTED {
+        let (lowest, highest) = (self.at.y - self.radius, self.at.y + self.radius);
+        for [from, to] in &self.of_loop.slanted {
+            let is_beside = from.x.max(to.x) < left || from.x.min(to.x) > right;
+            if is_beside || to.y <= lowest || from.y >= highest {
                 continue;
             }
+            let slope = (to.x - from.x) / (to.y - from.y);
             // Where between its ends it is near.
             let ends = [left, right].map(|x| from.y + (x - from.x) / slope);
             let low = height(from.y.max(ends[0].min(ends[1]))).max(-1.0);

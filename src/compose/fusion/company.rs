@@ -154,7 +154,7 @@ impl<'a> Company<'a> {
     /// A whole pixel that does not depend on what of them is seen, if all that hide a part of the disc are of one radius each.
     pub(super) fn origin(&self) -> Option<DVec2> {
         let mut origins = self.partial.iter().map(|of| match &of.member.kind {
-            Kind::Level(occluder) => Some(occluder.origin()),
+            Kind::Level(occluder) => Some(occluder.origin),
             Kind::Tilted(_) => None,
         });
         let first = origins.next().flatten();

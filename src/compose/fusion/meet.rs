@@ -9,7 +9,7 @@ use glam::DVec2;
 use super::chords::{Chords, Lane, Part};
 use super::company::{Company, Together};
 use super::member::{Kind, Member};
-use super::occluder::Occluder;
+use super::occluder::{NearRows, Occluder};
 use super::pixel::{Pixels, Seen};
 use crate::density::lanes::LANES;
 
@@ -19,6 +19,9 @@ const PARALLEL: f64 = 1e-6;
 /// A density that is as good as 0, and as far from 1 as good as 1.
 const NOTHING: f32 = 1e-4;
 
+/// What is near is found for so many rows at once.
+const ROWS: f64 = 8.0;
+
 /// The companies of a group's members that pixels have shown so far.
 pub(super) type Companies<'a> = BTreeMap<Seen, Company<'a>>;
 
@@ -27,8 +30,9 @@ pub(super) type Companies<'a> = BTreeMap<Seen, Company<'a>>;
 pub(super) struct Meet {
     level: Level,
     chords: Chords,
-    /// For each member the loops that discs about the row's points may meet.
-    near: Vec<Vec<usize>>,
+    /// For each member what discs about points of some rows may meet, and where these rows are.
+    near: Vec<NearRows>,
+    near_rows: Range<f64>,
     /// Of the pixels that are worked on together: what their companies hold back together or what both of a pair hide, and what
     /// each that hides a part of the disc hides, altogether and in one row of points.
     together: Lane,
@@ -43,6 +47,7 @@ impl Default for Meet {
             level: Level::new(),
             chords: Chords::default(),
             near: Vec::new(),
+            near_rows: 0.0..0.0,
             together: [0.0; LANES],
             densities: Vec::new(),
             of_row: Vec::new(),
@@ -61,7 +66,6 @@ impl Meet {
         pixels: &mut Pixels,
         row: Range<usize>,
     ) {
-        let mut is_row_known = false;
         let mut rest = row.clone();
         while let Some((seen, run)) = pixels.next_shared(rest.clone()) {
             rest.start = run.end;
@@ -71,8 +75,7 @@ impl Meet {
             if matches!(company.together, Together::Alone) {
                 continue;
             }
-            if !is_row_known {
-                is_row_known = true;
+            if !self.near_rows.contains(&start.y) {
                 self.find_near(members, start.y);
             }
             let middle = start + DVec2::new((run.start - row.start) as f64, 0.0) + 0.5;
@@ -80,12 +83,21 @@ impl Meet {
         }
     }
 
+    /// Forgets the members of other pixels.
+    pub(super) fn begin(&mut self) {
+        self.near_rows = 0.0..0.0;
+    }
+
+    /// Finds what of the members is near some rows, the first of which begins at height `y`.
     fn find_near(&mut self, members: &[Member], y: f64) {
-        self.near.iter_mut().for_each(Vec::clear);
-        self.near.resize_with(members.len(), Vec::new);
+        self.near_rows = y..y + ROWS;
+        self.near.iter_mut().for_each(NearRows::clear);
+        if self.near.len() < members.len() {
+            self.near.resize_with(members.len(), NearRows::default);
+        }
         for (member, near) in members.iter().zip(&mut self.near) {
             if let Kind::Level(occluder) = &member.kind {
-                occluder.near_row(y, near);
+                occluder.near_rows(y..y + ROWS, near);
             }
         }
     }
@@ -237,23 +249,15 @@ impl Meet {
 
     /// Finds the chords of a row of points: of pixels the first of which has its middle there, at that height in their squares.
     fn place(&mut self, company: &Company<'_>, middle: DVec2, height: f64) {
-        let seen: Vec<Option<Occluder>> = company
-            .partial
-            .iter()
-            .map(|of| match &of.member.kind {
-                Kind::Level(_) => None,
-                Kind::Tilted(loops) => Some(Occluder::seen_from(middle, loops)),
-            })
-            .collect();
         let width = (company.square.pixels - 1) as f64;
         let mut parts = Vec::new();
-        for (caster, (of, seen)) in company.partial.iter().zip(&seen).enumerate() {
+        let mut seen: Vec<(usize, Occluder)> = Vec::new();
+        for (caster, of) in company.partial.iter().enumerate() {
             let side = of.member.averaged_side();
             let up = DVec2::new(0.0, height * side);
-            match (&of.member.kind, seen) {
-                (Kind::Level(occluder), _) => {
-                    let loops = self.near[of.index].iter();
-                    let loops = loops.map(|&index| &occluder.loops[index]);
+            match &of.member.kind {
+                Kind::Level(occluder) => {
+                    let loops = self.near[of.index].loops().iter();
                     let all = loops.map(|of_loop| Part {
                         caster,
                         of_loop,
@@ -264,18 +268,19 @@ impl Meet {
                     });
                     parts.extend(all.filter(Part::is_near));
                 }
-                (Kind::Tilted(_), Some(seen)) => {
-                    parts.extend(seen.loops.iter().map(|of_loop| Part {
-                        caster,
-                        of_loop,
-                        radius: seen.radius,
-                        side,
-                        at: up - of_loop.base,
-                        width,
-                    }));
-                }
-                (Kind::Tilted(_), None) => {}
+                Kind::Tilted(loops) => seen.push((caster, Occluder::seen_from(middle, loops))),
             }
+        }
+        // Seen from a point, on its unit disc: it sees them through no square.
+        for (caster, seen) in &seen {
+            parts.extend(seen.loops().iter().map(|of_loop| Part {
+                caster: *caster,
+                of_loop,
+                radius: seen.radius,
+                side: 0.0,
+                at: -of_loop.base,
+                width,
+            }));
         }
         self.chords.place(company.partial.len(), &parts);
     }

@@ -4,7 +4,10 @@ use glam::DVec2;
 
 use super::occluder::Occluder;
 use crate::compose::caster::{AnyShadow, Cast};
-use crate::density::{averaged_side, flatness};
+use crate::density::lanes::LANES;
+use crate::density::{CURVES, averaged_side, flatness};
+use crate::grid::Grid;
+use crate::shadow::Shadow;
 use crate::tilted::Circle;
 
 /// A cast, and what of it its chords need.
@@ -22,14 +25,21 @@ pub(super) enum Kind {
 }
 
 impl Member {
-    pub(super) fn new(cast: &Cast, scale: f64) -> Option<Self> {
+    /// As far as a grid may show it.
+    pub(super) fn new(cast: &Cast, grid: &Grid) -> Option<Self> {
+        let scale = grid.pixels_per_unit();
         let kind = match &cast.shadow {
             AnyShadow::Level(shadow) => {
                 let radius = shadow.radius();
-                let flat = flatness(FLATNESS, radius, 1.0 / scale);
-                let polygons = shadow.outline(flat).polygons(flat);
+                let flat = flatness(CURVES, radius, 1.0 / scale);
+                let of_part =
+                    |part: &Shadow| part.drawn_outline(CURVES, 1.0 / scale).polygons(flat);
+                // Pixels are worked on together with others that may be beyond the grid.
+                let parts = shadow.parts_on(grid, LANES as f64);
+                let polygons: Vec<_> = parts.flat_map(of_part).collect();
+                let origin = shadow.hull().map_or(DVec2::ZERO, |(min, _)| min * scale);
                 let radius = (radius * scale).max(LEAST_RADIUS);
-                Kind::Level(Occluder::new(&polygons, scale, radius))
+                Kind::Level(Occluder::new(&polygons, scale, radius, origin.floor()))
             }
             AnyShadow::Tilted(shadow) => {
                 let place = |circle: &Circle| circle.placed(scale, DVec2::ZERO);
@@ -57,9 +67,6 @@ impl Member {
         }
     }
 }
-
-/// How far lines in place of curves may move what casters hide together, in levels.
-const FLATNESS: f64 = 0.2;
 
 /// The disc of a hard shadow, in pixels: next to the pixel's square it is a point.
 const LEAST_RADIUS: f64 = 1e-3;

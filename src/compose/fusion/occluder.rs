@@ -1,8 +1,13 @@
 //! A caster as chords of the light's disc meet it: loops of lines.
 
+use core::ops::Range;
+
 use glam::DVec2;
 
 use crate::tilted::Circle;
+
+/// Along an outline that runs by more than this for each step up, chords change faster than pieces of the disc's height tell.
+const SLANTED: f64 = 1.0;
 
 /// One caster as its chords need it. Each of its loops has an origin of its own, a whole pixel: what a pixel is given depends
 /// neither on what else there is nor on the grid that shows it.
@@ -10,10 +15,12 @@ use crate::tilted::Circle;
 pub(super) struct Occluder {
     /// The penumbra radius in pixels.
     pub(super) radius: f64,
-    pub(super) loops: Vec<Loop>,
+    loops: Vec<Loop>,
+    /// A whole pixel of its own, from the scene's origin.
+    pub(super) origin: DVec2,
 }
 
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Loop {
     /// In pixels from the scene's origin; all else from here.
     pub(super) base: DVec2,
@@ -21,6 +28,8 @@ pub(super) struct Loop {
     pub(super) max: DVec2,
     /// The outline's lines but the level ones, each from its lower y to its higher one.
     pub(super) edges: Vec<[DVec2; 2]>,
+    /// Those of its edges along which chords change faster than pieces of the disc's height tell.
+    pub(super) slanted: Vec<[DVec2; 2]>,
     /// All lines, each with the area on its left where y points up.
     lines: Vec<[DVec2; 2]>,
     /// Where the outline turns up or down, and its level lines, from left to right: there the hidden part of a chord begins or
@@ -28,11 +37,37 @@ pub(super) struct Loop {
     pub(super) turns: Vec<[DVec2; 2]>,
 }
 
+/// What of an occluder discs about points of some rows of pixels may meet, in the memory of that for others.
+#[derive(Debug, Default)]
+pub(super) struct NearRows {
+    loops: Vec<Loop>,
+    count: usize,
+}
+
+impl NearRows {
+    pub(super) fn clear(&mut self) {
+        self.count = 0;
+    }
+
+    pub(super) fn loops(&self) -> &[Loop] {
+        &self.loops[..self.count]
+    }
+
+    fn push(&mut self) -> &mut Loop {
+        if self.count == self.loops.len() {
+            self.loops.push(Loop::default());
+        }
+        self.count += 1;
+        &mut self.loops[self.count - 1]
+    }
+}
+
 impl Occluder {
     /// Of polygons in pixels from the scene's origin, of which there are `scale` a unit of theirs.
-    pub(super) fn new(polygons: &[Vec<DVec2>], scale: f64, radius: f64) -> Self {
+    pub(super) fn new(polygons: &[Vec<DVec2>], scale: f64, radius: f64, origin: DVec2) -> Self {
         Self {
             radius,
+            origin,
             loops: polygons
                 .iter()
                 .filter_map(|polygon| Loop::new(polygon, scale))
@@ -40,27 +75,23 @@ impl Occluder {
         }
     }
 
-    /// A whole pixel of its own, from the scene's origin.
-    pub(super) fn origin(&self) -> DVec2 {
-        self.loops.first().map_or(DVec2::ZERO, |first| first.base)
-    }
-
-    /// Puts the loops that discs about points of the pixels' row that begins at height `y` may meet into `out`.
-    pub(super) fn near_row(&self, y: f64, out: &mut Vec<usize>) {
-        let is_near = |(index, of_loop): (usize, &Loop)| {
-            let y = y - of_loop.base.y;
-            let meets = of_loop.min.y <= y + 1.0 + self.radius && of_loop.max.y >= y - self.radius;
-            meets.then_some(index)
-        };
-        out.extend(self.loops.iter().enumerate().filter_map(is_near));
+    /// Puts what discs about points between two heights may meet into `out`.
+    pub(super) fn near_rows(&self, heights: Range<f64>, out: &mut NearRows) {
+        for of_loop in &self.loops {
+            let low = heights.start - of_loop.base.y - self.radius;
+            let high = heights.end - of_loop.base.y + self.radius;
+            if of_loop.min.y <= high && of_loop.max.y >= low {
+                out.push().become_part(of_loop, low, high);
+            }
+        }
     }
 
     /// The direction of the outline where the disc about a point meets it in a single line from one side to the other, or none;
-    /// and up to which x to the right of the point that stays so. `near` are the loops that the point's row may meet.
-    pub(super) fn single_line(&self, near: &[usize], at: DVec2) -> (Option<DVec2>, f64) {
+    /// and up to which x to the right of the point that stays so. `near` is what rows of points with it may meet.
+    pub(super) fn single_line(&self, near: &NearRows, at: DVec2) -> (Option<DVec2>, f64) {
         let reach = self.radius;
         let (mut count, mut single, mut until) = (0, None, f64::MAX);
-        for of_loop in near.iter().map(|&index| &self.loops[index]) {
+        for of_loop in near.loops() {
             let (base, at) = (of_loop.base.x, at - of_loop.base);
             if at.x > of_loop.max.x + reach {
                 continue;
@@ -106,7 +137,11 @@ impl Occluder {
                     .collect()
             })
             .collect();
-        Self::new(&polygons, 1.0, 1.0)
+        Self::new(&polygons, 1.0, 1.0, DVec2::ZERO)
+    }
+
+    pub(super) fn loops(&self) -> &[Loop] {
+        &self.loops
     }
 }
 
@@ -119,9 +154,7 @@ impl Loop {
             base,
             min: points.iter().copied().fold(DVec2::MAX, DVec2::min),
             max: points.iter().copied().fold(DVec2::MIN, DVec2::max),
-            edges: Vec::new(),
-            lines: Vec::new(),
-            turns: Vec::new(),
+            ..Self::default()
         };
         let count = points.len();
         for (index, &from) in points.iter().enumerate() {
@@ -139,6 +172,25 @@ impl Loop {
                 of_loop.turns.push([from.min(to), from.max(to)]);
             }
         }
+        let is_slanted =
+            |[from, to]: &[DVec2; 2]| (to.x - from.x).abs() > SLANTED * (to.y - from.y);
+        let edges = of_loop.edges.iter().copied();
+        of_loop.slanted.extend(edges.filter(is_slanted));
         Some(of_loop)
+    }
+
+    /// Becomes what of another loop is between two heights.
+    fn become_part(&mut self, of: &Self, low: f64, high: f64) {
+        (self.base, self.min, self.max) = (of.base, of.min, of.max);
+        for (part, all) in [
+            (&mut self.edges, &of.edges),
+            (&mut self.slanted, &of.slanted),
+            (&mut self.lines, &of.lines),
+            (&mut self.turns, &of.turns),
+        ] {
+            let is_between = |[a, b]: &[DVec2; 2]| a.y.min(b.y) <= high && a.y.max(b.y) >= low;
+            part.clear();
+            part.extend(all.iter().copied().filter(is_between));
+        }
     }
 }

@@ -87,6 +87,11 @@ impl Pixels {
         self.held.is_empty()
     }
 
+    /// Whether several casts hide a part of the disc from any pixel.
+    pub(super) fn are_shared(&self) -> bool {
+        self.seen.iter().any(|seen| seen.is_shared())
+    }
+
     /// Adds a cast that has one density at some pixels.
     pub(super) fn add_constant(&mut self, level: Level, at: Range<usize>, density: f32, by: By) {
         dispatch!(level, simd => simd.vectorize(#[inline(always)] || {

@@ -31,19 +31,24 @@ impl Mixer {
     }
 
     /// `fill` where `passed` of the light reaches it, over `below` by `alpha`.
+    #[inline]
     pub(super) fn mixed(&self, fill: [u8; 3], below: [u8; 3], passed: f32, alpha: f32) -> [u8; 3] {
         // Most pixels of a picture are lit and covered wholly.
         if passed == 1.0 && alpha == 1.0 {
             return fill;
         }
-        [0, 1, 2].map(|channel| {
-            let [fill, below] = [fill, below].map(|of| self.decoded[usize::from(of[channel])]);
+        let mut mixed = [0; 3];
+        for (channel, mixed) in mixed.iter_mut().enumerate() {
+            let fill = self.decoded[usize::from(fill[channel])];
+            let below = self.decoded[usize::from(below[channel])];
             let shadow = self.shadow[channel];
             let shaded = shadow + (fill - shadow) * passed;
-            self.encoded(below + (shaded - below) * alpha)
-        })
+            *mixed = self.encoded(below + (shaded - below) * alpha);
+        }
+        mixed
     }
 
+    #[inline]
     fn encoded(&self, value: f32) -> u8 {
         match self.blending {
             Blending::Srgb => (value + 0.5) as u8,
