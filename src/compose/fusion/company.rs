@@ -189,4 +189,9 @@ impl Square {
         }
         square
     }
+
+    /// Whether each pixel is one point, and as many as can be are worked on together.
+    pub(super) fn is_wide(&self) -> bool {
+        self.pixels == LANES
+    }
 }

@@ -22,6 +22,9 @@ const NOTHING: f32 = 1e-4;
 /// What is near is found for so many rows at once.
 const ROWS: f64 = 8.0;
 
+/// Chords are placed for so many times the pixels that are worked on together, where each of these is one point.
+const BLOCKS: i64 = 4;
+
 /// The companies of a group's members that pixels have shown so far.
 pub(super) type Companies<'a> = BTreeMap<Seen, Company<'a>>;
 
@@ -115,7 +118,9 @@ impl Meet {
         // Which pixels are worked on together does not depend on what is asked for: nor do the bits of what is found.
         let origin = company.origin().unwrap_or(middle.floor());
         let number = |x: f64| (x - origin.x).floor() as i64;
-        let (mut known, mut parallel, mut until) = (None, None, f64::MIN);
+        let blocks = if square.is_wide() { BLOCKS } else { 1 };
+        let (mut known, mut placed) = (None, None);
+        let (mut parallel, mut until) = (None, f64::MIN);
         let count = run.len();
         for (index, pixel) in run.enumerate() {
             let at = middle + DVec2::new(index as f64, 0.0);
@@ -142,7 +147,13 @@ impl Meet {
             if known != Some(first) {
                 known = Some(first);
                 let asked = lane as usize..lanes.min(lane + (count - index) as i64) as usize;
-                self.follow(company, at - DVec2::new(lane as f64, 0.0), asked);
+                let behind = first.rem_euclid(blocks * lanes);
+                let start = at - DVec2::new((behind + lane) as f64, 0.0);
+                if blocks > 1 && placed != Some(first - behind) {
+                    placed = Some(first - behind);
+                    self.place(company, start, 0.0, (blocks * lanes) as usize);
+                }
+                self.follow(company, start, behind as f32, asked);
             }
             let lanes = lane as usize * square.per_pixel..(lane as usize + 1) * square.per_pixel;
             let weights = &square.weights[lanes.clone()];
@@ -189,10 +200,12 @@ impl Meet {
         (parallel, until_a.min(until_b))
     }
 
-    /// Follows the light to the pixels that are worked on together, the first of which has its middle there. Only of some of them
-    /// it is asked what they see.
-    fn follow(&mut self, company: &Company<'_>, middle: DVec2, asked: Range<usize>) {
+    /// Follows the light to the pixels that are worked on together, the first of which is so many pixels `behind` one that has its
+    /// middle there. Only of some of them it is asked what they see.
+    fn follow(&mut self, company: &Company<'_>, middle: DVec2, behind: f32, asked: Range<usize>) {
         let square = &company.square;
+        let mut points = square.points;
+        points.pixels.iter_mut().for_each(|pixel| *pixel += behind);
         let level = self.level;
         let count = company.partial.len();
         self.together = [0.0; LANES];
@@ -207,12 +220,14 @@ impl Meet {
                     *sum += weight * of_row;
                 }
             };
-            self.place(company, middle, height);
+            if !square.is_wide() {
+                self.place(company, middle, height, square.pixels);
+            }
             let is_known = matches!(company.together, Together::Pair { is_known, .. } if is_known);
             if !is_known {
                 let densities = self.densities.iter_mut().zip(&mut self.of_row);
                 for (caster, (densities, of_row)) in densities.enumerate() {
-                    self.chords.density(level, caster, &square.points, of_row);
+                    self.chords.density(level, caster, &points, of_row);
                     add(densities, of_row);
                 }
             }
@@ -220,11 +235,11 @@ impl Meet {
                 Together::Alone => {}
                 Together::Pair { .. } => {
                     let chords = &self.chords;
-                    chords.shared(level, [0, 1], &square.points, &mut together);
+                    chords.shared(level, [0, 1], &points, &mut together);
                 }
                 Together::Opaque { weights, always } => {
                     let chords = &mut self.chords;
-                    chords.united(level, weights, &square.points, &mut together);
+                    chords.united(level, weights, &points, &mut together);
                     together.iter_mut().for_each(|held| *held += always);
                 }
                 Together::Any => {
@@ -236,7 +251,7 @@ impl Meet {
                         together[lane] = if densities.clone().filter(is_partial).count() < 2 {
                             company.held(densities, hidden)
                         } else {
-                            self.chords.held(&square.points, lane, |inside| {
+                            self.chords.held(&points, lane, |inside| {
                                 company.held(inside.iter().copied(), hidden)
                             })
                         };
@@ -247,9 +262,10 @@ impl Meet {
         }
     }
 
-    /// Finds the chords of a row of points: of pixels the first of which has its middle there, at that height in their squares.
-    fn place(&mut self, company: &Company<'_>, middle: DVec2, height: f64) {
-        let width = (company.square.pixels - 1) as f64;
+    /// Finds the chords of a row of points: of so many pixels the first of which has its middle there, at that height in their
+    /// squares.
+    fn place(&mut self, company: &Company<'_>, middle: DVec2, height: f64, pixels: usize) {
+        let width = (pixels - 1) as f64;
         let mut parts = Vec::new();
         let mut seen: Vec<(usize, Occluder)> = Vec::new();
         for (caster, of) in company.partial.iter().enumerate() {
