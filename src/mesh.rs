@@ -220,16 +220,20 @@ impl Shadow {
     /// ```
     #[must_use]
     pub fn mesh(&self, options: impl Into<MeshOptions>) -> ShadowMesh {
-        let options = options.into();
+        self.mesh_with(&options.into(), &mut Scratch::new())
+    }
+
+    /// The mesh, with the corners that a scratch keeps.
+    fn mesh_with(&self, options: &MeshOptions, scratch: &mut Scratch) -> ShadowMesh {
         let mut buffers = MeshBuffers::new();
-        match self.patterned(&options, &mut Scratch::new(), &mut buffers) {
+        match self.patterned(options, scratch, &mut buffers) {
             Ok(Some(quality)) => ShadowMesh {
                 vertices: buffers.vertices,
                 indices: buffers.indices,
                 error_levels: quality.error_levels,
                 complete: quality.complete,
             },
-            _ => self.refined(&options),
+            _ => self.refined(options),
         }
     }
 
@@ -312,7 +316,7 @@ impl Shadow {
             levels - share,
             step,
             options.max_vertices,
-            &mut scratch.strips,
+            &mut scratch.meshes.strips,
             sink,
         )?;
         Ok(error.map(|error| MeshQuality {

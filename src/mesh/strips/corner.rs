@@ -11,7 +11,7 @@ use glam::DVec2;
 use libm::{asin, sqrt};
 
 /// A rounded rectangle in units of the penumbra radius, about any origin.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Corner {
     /// The corner that looks: where its two sides meet, rounded or not.
     pub(super) tip: DVec2,
@@ -29,6 +29,15 @@ impl Corner {
         let right = clamped(max.x, [min.y, max.y], [below, tip]);
         let left = clamped(-min.x, [min.y, max.y], [far, left]);
         ((right + left) * FRAC_1_PI).clamp(0.0, 1.0)
+    }
+
+    /// The corner half-way to another one.
+    pub(super) fn between(&self, other: &Self) -> Self {
+        Self {
+            tip: self.tip.midpoint(other.tip),
+            far: self.far.midpoint(other.far),
+            radii: [0, 1, 2, 3].map(|i: usize| f64::midpoint(self.radii[i], other.radii[i])),
+        }
     }
 
     /// Whether a whole disc has room between the sides.
