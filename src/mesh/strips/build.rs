@@ -65,6 +65,17 @@ struct State {
     places: Vec<Place>,
     /// For each fan's points, the least and the largest error found beside them.
     errors: [Vec<[f64; 2]>; 4],
+    /// The exact densities at few samples and at many.
+    few: Exact,
+    many: Exact,
+}
+
+/// Exact densities at the samples of triangles that stay where they are while their own densities are balanced.
+#[derive(Debug, Clone, Default)]
+struct Exact {
+    densities: Vec<f64>,
+    /// Whether there are all of them.
+    complete: bool,
 }
 
 /// Makes templates. It keeps its memory.
@@ -81,6 +92,17 @@ pub(super) struct Builder {
     inner: Vec<RingVertex>,
     triangles: Vec<[u32; 3]>,
     measure: Measure,
+}
+
+/// How closely errors are looked at.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Look {
+    /// At few samples.
+    Few,
+    /// At many.
+    Many,
+    /// And at the tops beside them, until one is above the limit.
+    Tops { limit: f64 },
 }
 
 /// What measuring errors takes.
@@ -203,7 +225,7 @@ impl Builder {
         let [first, rest @ ..] = &mut self.ends;
         self.triangles.clear();
         let umbra = first.corners[0].has_umbra();
-        first.places.clear();
+        first.clear();
         for ring in 0..=rings.count() + 1 {
             first.lay(ring, rings, &self.fan_of, &mut self.inner);
             if ring > 0 {
@@ -215,7 +237,7 @@ impl Builder {
             fill(&self.outer, &mut self.triangles);
         }
         for end in &mut rest[..count - 1] {
-            end.places.clear();
+            end.clear();
             for ring in 0..=rings.count() + 1 {
                 end.lay(ring, rings, &self.fan_of, &mut self.inner);
             }
@@ -225,7 +247,7 @@ impl Builder {
             .all(|end| end.thinnest(&self.triangles) > 0.0)
     }
 
-    /// The largest error, in density: by few samples where that is too large already.
+    /// The largest error, in density: looked at more closely as long as it is not too large.
     fn error(&mut self, count: usize, limit: f64) -> f64 {
         let Self {
             ends,
@@ -236,28 +258,23 @@ impl Builder {
             ..
         } = self;
         let ends = &mut ends[..count];
-        let mut worst: f64 = 0.0;
-        for end in &mut *ends {
-            worst = worst.max(measure.error(end, fan_of, triangles, COARSE, f64::INFINITY));
-        }
-        if worst > limit {
-            return worst;
-        }
-        worst = 0.0;
-        for end in &mut *ends {
-            worst = worst.max(measure.error(end, fan_of, triangles, FINE, NEAR * limit));
+        for look in [Look::Few, Look::Many, Look::Tops { limit }] {
+            let errors = ends
+                .iter_mut()
+                .map(|end| measure.error(end, fan_of, triangles, look));
+            let worst = errors.fold(0.0, f64::max);
             if worst > limit {
                 return worst;
             }
-        }
-        if let [from, to] = ends {
-            middle.between(from, to);
-            if middle.thinnest(triangles) <= 0.0 {
-                return f64::INFINITY;
+            if let ([from, to], Look::Tops { .. }) = (&mut *ends, look) {
+                middle.between(from, to);
+                if middle.thinnest(triangles) <= 0.0 {
+                    return f64::INFINITY;
+                }
+                return worst.max(measure.error(middle, fan_of, triangles, look));
             }
-            worst = worst.max(measure.error(middle, fan_of, triangles, FINE, NEAR * limit));
         }
-        worst
+        0.0
     }
 
     /// Writes what was found into a template.
@@ -283,6 +300,15 @@ impl Builder {
 }
 
 impl State {
+    /// Forgets the vertices.
+    fn clear(&mut self) {
+        self.places.clear();
+        for exact in [&mut self.few, &mut self.many] {
+            exact.densities.clear();
+            exact.complete = false;
+        }
+    }
+
     /// Lays a ring through the points of all corners.
     fn lay(&mut self, ring: usize, rings: &Rings, fan_of: &[usize; 4], laid: &mut Vec<RingVertex>) {
         laid.clear();
@@ -331,7 +357,7 @@ impl State {
             *corner = from.between(to);
         }
         self.errors.clone_from(&from.errors);
-        self.places.clear();
+        self.clear();
         let places = from.places.iter().zip(&to.places);
         self.places.extend(places.map(|(from, to)| Place {
             at: from.at.midpoint(to.at),
@@ -365,22 +391,31 @@ impl State {
 }
 
 impl Measure {
-    /// The largest error of triangles, in density, by samples; each vertex keeps the extremes beside it. Where a sample's
-    /// error is above `near` the top beside it counts.
+    /// The largest error of triangles, in density; each vertex keeps the extremes of the samples beside it.
     fn error(
         &mut self,
         state: &mut State,
         fan_of: &[usize; 4],
         triangles: &[[u32; 3]],
-        parts: u32,
-        near: f64,
+        look: Look,
     ) -> f64 {
         let State {
             corners,
             places: all,
             errors: beside,
+            few,
+            many,
             ..
         } = state;
+        let (exact, parts) = match look {
+            Look::Few => (few, COARSE),
+            Look::Many | Look::Tops { .. } => (many, FINE),
+        };
+        let limit = match look {
+            Look::Few | Look::Many => f64::INFINITY,
+            Look::Tops { limit } => limit,
+        };
+        let mut known = 0;
         let half = smallest(corners);
         let whole = |stretch: DVec2| Corner {
             tip: half + stretch,
@@ -398,8 +433,12 @@ impl Measure {
         // A few large triangles take more samples each.
         let more = sqrt(FEW / triangles.len() as f64) as u32;
         let parts = parts * more.clamp(1, MOST);
-        for errors in &mut *beside {
-            errors.fill([0.0; 2]);
+        // Tops come after all samples, whose extremes stay.
+        let extremes = limit.is_infinite();
+        if extremes {
+            for errors in &mut *beside {
+                errors.fill([0.0; 2]);
+            }
         }
         self.measured.clear();
         let mut most: f64 = 0.0;
@@ -407,16 +446,10 @@ impl Measure {
             let places = triangle.map(|i| all[i as usize]);
             let at = places.map(|place| place.at);
             let densities = places.map(|place| f64::from(place.density));
-            // One of equal corners speaks for all, but not for what lies between them, nor where rounding cuts the same
-            // four vertices the other way.
             let quarters = places.map(|place| place.quarter);
             let spans = quarters != [quarters[0]; 3];
-            let mut key = [fan_of[quarters[0]]; 4];
-            for (part, place) in key[1..].iter_mut().zip(&places) {
-                *part = place.point;
-            }
-            key[1..].sort_unstable();
-            let spoken_for = !spans && !self.measured.insert(key);
+            let spoken_for =
+                key(&places, fan_of, spans).is_some_and(|key| !self.measured.insert(key));
             let umbra = densities == [1.0; 3] && places.iter().all(|place| place.fixed);
             if spoken_for || umbra {
                 continue;
@@ -429,14 +462,31 @@ impl Measure {
             for stretch in [DVec2::ZERO, longest].into_iter().take(lengths) {
                 let whole = whole(stretch);
                 let at = [0, 1, 2].map(|i: usize| at[i] + SIGNS[quarters[i]] * stretch);
+                let first = known;
                 let errors = |samples: &[Weights], errors: &mut [f64]| {
+                    let on_the_way_up = known > first;
+                    let density = |weights: Weights| whole.density(mix(at, weights));
                     for (&weights, error) in samples.iter().zip(errors) {
-                        let exact = whole.density(mix(at, weights));
+                        let exact = if on_the_way_up {
+                            density(weights)
+                        } else {
+                            if !exact.complete {
+                                exact.densities.push(density(weights));
+                            }
+                            known += 1;
+                            exact.densities[known - 1]
+                        };
                         *error = mix_densities(densities, weights) - exact;
                     }
                 };
-                let (error, _) = self.samples.worst(at, parts, SPACING, near, errors);
+                let (error, _) = self.samples.worst(at, parts, SPACING, NEAR * limit, errors);
+                if error > limit {
+                    return error;
+                }
                 most = most.max(error);
+                if !extremes {
+                    continue;
+                }
                 for (weights, error) in self.samples.all() {
                     for (place, weight) in places.into_iter().zip(weights) {
                         if weight >= BESIDE {
@@ -447,8 +497,38 @@ impl Measure {
                 }
             }
         }
+        exact.complete = true;
         most
     }
+}
+
+/// What triangles have in common that are mirror images of one another: those of equal corners, and those between two of
+/// four equal ones, unless rounding cuts the same four vertices the other way.
+fn key(places: &[Place; 3], fan_of: &[usize; 4], spans: bool) -> Option<[usize; 4]> {
+    let [a, b, c] = places.map(|place| (place.quarter, place.point));
+    // The one alone at its corner, if there is one.
+    let [alone, first, second] = if a.0 == b.0 {
+        [c, a, b]
+    } else if b.0 == c.0 {
+        [a, b, c]
+    } else if c.0 == a.0 {
+        [b, c, a]
+    } else {
+        return None;
+    };
+    if spans {
+        let pair = [first.1.min(second.1), first.1.max(second.1)];
+        // Beside one another along x, along y, or opposite.
+        let way = match alone.0.abs_diff(first.0) {
+            2 => 2,
+            _ if alone.0 / 2 == first.0 / 2 => 0,
+            _ => 1,
+        };
+        return (*fan_of == [0; 4]).then_some([fan_of.len() + way, alone.1, pair[0], pair[1]]);
+    }
+    let mut key = [fan_of[a.0], a.1, b.1, c.1];
+    key[1..].sort_unstable();
+    Some(key)
 }
 
 /// Vertices nearer than this, in penumbra radii, are one.

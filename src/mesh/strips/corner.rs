@@ -216,8 +216,16 @@ const LARGE: f64 = 32.0;
 /// The integral of `sqrt(1 - u²)` from 0 to `t`, to 2.5e-9, without an arcsine: π/4 less what is left to the disc's edge,
 /// which over v^1.5, v = 1 - |t|, is smooth. A polynomial through Chebyshev's points.
 fn half_disc(t: f64) -> f64 {
-    let v = (1.0 - t.abs()).max(0.0);
-    let smooth = TAIL.iter().rev().fold(0.0, |sum, factor| sum * v + factor);
+    let v = 1.0 - t.abs();
+    if v <= 0.0 {
+        return FRAC_PI_4.copysign(t);
+    }
+    // In pairs, which don't wait for one another.
+    let [a, b, c, d, e, f, g, h] = TAIL;
+    let (squared, pair) = (v * v, |low: f64, high: f64| low + high * v);
+    let low = pair(a, b) + pair(c, d) * squared;
+    let high = pair(e, f) + pair(g, h) * squared;
+    let smooth = low + high * (squared * squared);
     (FRAC_PI_4 - v * sqrt(v) * smooth).copysign(t)
 }
 
