@@ -239,8 +239,9 @@ impl Shadow {
 
     /// Gives the triangles of [`Shadow::mesh`] to a sink.
     ///
-    /// Nothing is allocated once `scratch` and the sink have grown, for rounded rectangles and circles wherever they are and
-    /// for other shadows that stay as and where they are: of these it keeps the last sixteen. Where more of them come
+    /// Nothing is allocated once `scratch` and the sink have grown, for rounded rectangles and circles wherever they are,
+    /// whatever the lengths between corners that do not feel each other and while these stay about as round over the penumbra
+    /// radius, and for other shadows that stay as and where they are: of these it keeps the last sixteen. Where more of them come
     /// again, or move, a [`MeshCache`] keeps them.
     ///
     /// # Errors

@@ -20,8 +20,9 @@ use crate::shape::Cover;
 /// A shadow whose numbers are rounded differently elsewhere may be made anew, never drawn wrong.
 ///
 /// The mesh of a rounded rectangle whose ends do not feel each other across the penumbra is four corners and straight strips
-/// between them. It keeps the last sixteen such sets of corners as well, whatever the lengths between them, so that a card, a row
-/// or a pill of a new size takes microseconds where its corners are known. The mesh is the same either way.
+/// between them. The last 64 such sets of corners are kept as well, whatever the lengths between them, so that a card, a row
+/// or a pill of a new size takes microseconds where its corners are known; equal corners serve all radii near their own, over the
+/// penumbra's. The mesh is the same either way.
 ///
 /// ```
 /// use core::num::NonZeroUsize;

@@ -7,7 +7,8 @@
 //!
 //! What comes out is measured against the closed form and made finer until it is within the tolerance. Meshes depend on the
 //! corners over the penumbra radius only, and are kept for the next shadow that has the same. Where the ends along an axis do
-//! not feel each other, the length along it is none of what they depend on.
+//! not feel each other, the length along it is none of what they depend on. Where no corner feels another and all are equal,
+//! radii go in [steps](steps_beside): from one to the next the vertices of the same triangles move straight on.
 
 mod build;
 mod corner;
@@ -23,7 +24,7 @@ use super::{MeshSink, MeshVertex};
 use crate::density::rounded::Rounded;
 use crate::error::Result;
 
-/// Meshes that are kept.
+/// Templates that are kept: enough for corners that rise from next to the ground to high above it, in some megabytes.
 const KEPT: usize = 64;
 
 /// What strips leave from mesh to mesh.
@@ -257,3 +258,27 @@ const SIGNS: [DVec2; 4] = [
     DVec2::NEG_ONE,
     DVec2::new(1.0, -1.0),
 ];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn spans_hold_what_is_in_them_and_meet() {
+        for i in 1..40_000 {
+            let radius = f64::from(i) / 4_096.0;
+            let Some([from, to]) = steps_beside(radius) else {
+                assert!(radius > 1.0 && radius < 1.0 + LEAST_STEP, "{radius}");
+                continue;
+            };
+            assert!(from <= radius && radius <= to, "{radius}: {from} to {to}");
+            assert!(to - from <= STEP * radius.max(1.0), "{radius}");
+            // The umbra's corner is sharp all the way, or round all the way.
+            assert!(to <= 1.0 || from > 1.0, "{radius}: {from} to {to}");
+            let middle = f64::midpoint(from, to);
+            assert_eq!(steps_beside(middle), Some([from, to]));
+        }
+        assert_eq!(steps_beside(0.0), Some([0.0, STEP]));
+        assert_eq!(steps_beside(1.0), Some([1.0 - STEP, 1.0]));
+    }
+}

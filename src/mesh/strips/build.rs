@@ -258,23 +258,24 @@ impl Builder {
             ..
         } = self;
         let ends = &mut ends[..count];
+        let mut worst = f64::INFINITY;
         for look in [Look::Few, Look::Many, Look::Tops { limit }] {
             let errors = ends
                 .iter_mut()
                 .map(|end| measure.error(end, fan_of, triangles, look));
-            let worst = errors.fold(0.0, f64::max);
+            worst = errors.fold(0.0, f64::max);
             if worst > limit {
                 return worst;
             }
-            if let ([from, to], Look::Tops { .. }) = (&mut *ends, look) {
-                middle.between(from, to);
-                if middle.thinnest(triangles) <= 0.0 {
-                    return f64::INFINITY;
-                }
-                return worst.max(measure.error(middle, fan_of, triangles, look));
-            }
         }
-        0.0
+        if let [from, to] = ends {
+            middle.between(from, to);
+            if middle.thinnest(triangles) <= 0.0 {
+                return f64::INFINITY;
+            }
+            worst = worst.max(measure.error(middle, fan_of, triangles, Look::Tops { limit }));
+        }
+        worst
     }
 
     /// Writes what was found into a template.
