@@ -12,7 +12,7 @@
 //! | `cards` | 100 cards on 1920 x 1080: projecting them, blending all, blending what opaque cards leave to be seen | part |
 //! | `mesh` | a shadow's triangles, few or quick, at a tolerance in levels | shape / few or quick / levels |
 //! | `raster` | the densities of triangles on pixels | shape |
-//! | `mesh-into` | the same into buffers of the caller's, again (warm) and for a shadow not seen before (new) | shape / warm or new / levels |
+//! | `mesh-into` | the same into buffers of the caller's, again (warm), for a shadow not seen before (new), for other sizes of known corners (size) and other radii of them (rise) | shape / way / levels |
 //! | `render` | whole pictures of scenes | scene |
 //! | `layers` | pictures of 3840 x 2160 with so many cards, side by side or piled up at random | order / cards |
 //!
@@ -362,7 +362,39 @@ fn mesh_into(c: &mut Criterion) {
             }
         }
     }
+    for (name, height, round) in [("card", 200.0, 12.0), ("pill", 64.0, 32.0)] {
+        let card = |more: f32| rounded(300.0 + more, height, round);
+        let sizes: Vec<_> = (0_u8..64)
+            .map(|i| shadow(&card(f32::from(i) * 3.1), 10.0))
+            .collect();
+        again(&mut group, &format!("{name}/size"), &sizes);
+    }
+    let rise = |i: u8| shadow(&card(), 4.0 + f32::from(i) * 0.2);
+    again(
+        &mut group,
+        "card/rise",
+        &(0_u8..64).map(rise).collect::<Vec<_>>(),
+    );
     group.finish();
+}
+
+/// Meshes of shadows in turn, whose corners were seen before.
+fn again(group: &mut BenchmarkGroup<'_, WallTime>, name: &str, shadows: &[Shadow]) {
+    for levels in [1.0, 4.0] {
+        let tolerance = Tolerance::levels(levels).unwrap();
+        let (mut buffers, mut scratch) = (MeshBuffers::<u16>::new(), Scratch::new());
+        let mut mesh = |shadow: &Shadow| {
+            buffers.clear();
+            shadow.mesh_into(&mut buffers, tolerance, &mut scratch)
+        };
+        for shadow in shadows {
+            mesh(shadow).unwrap();
+        }
+        let mut turns = shadows.iter().cycle();
+        group.bench_function(BenchmarkId::new(name, levels), |b| {
+            b.iter(|| mesh(black_box(turns.next().unwrap())).unwrap());
+        });
+    }
 }
 
 fn raster(c: &mut Criterion) {

@@ -220,23 +220,28 @@ impl Shadow {
     /// ```
     #[must_use]
     pub fn mesh(&self, options: impl Into<MeshOptions>) -> ShadowMesh {
-        let options = options.into();
+        self.mesh_with(&options.into(), &mut Scratch::new())
+    }
+
+    /// The mesh, with the corners that a scratch keeps.
+    fn mesh_with(&self, options: &MeshOptions, scratch: &mut Scratch) -> ShadowMesh {
         let mut buffers = MeshBuffers::new();
-        match self.patterned(&options, &mut Scratch::new(), &mut buffers) {
+        match self.patterned(options, scratch, &mut buffers) {
             Ok(Some(quality)) => ShadowMesh {
                 vertices: buffers.vertices,
                 indices: buffers.indices,
                 error_levels: quality.error_levels,
                 complete: quality.complete,
             },
-            _ => self.refined(&options),
+            _ => self.refined(options),
         }
     }
 
     /// Gives the triangles of [`Shadow::mesh`] to a sink.
     ///
-    /// Nothing is allocated once `scratch` and the sink have grown, for rounded rectangles and circles wherever they are and
-    /// for other shadows that stay as and where they are: of these it keeps the last sixteen. Where more of them come
+    /// Nothing is allocated once `scratch` and the sink have grown, for rounded rectangles and circles wherever they are,
+    /// whatever the lengths between corners that do not feel each other and while these stay about as round over the penumbra
+    /// radius, and for other shadows that stay as and where they are: of these it keeps the last sixteen. Where more of them come
     /// again, or move, a [`MeshCache`] keeps them.
     ///
     /// # Errors
@@ -312,7 +317,7 @@ impl Shadow {
             levels - share,
             step,
             options.max_vertices,
-            &mut scratch.strips,
+            &mut scratch.meshes.strips,
             sink,
         )?;
         Ok(error.map(|error| MeshQuality {

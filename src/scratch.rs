@@ -13,7 +13,6 @@ use crate::density::rows::Rows;
 use crate::hidden::inside::Inside;
 use crate::mesh::MeshCache;
 use crate::mesh::halving::HalvingScratch;
-use crate::mesh::strips::StripScratch;
 use crate::outline::Edge;
 
 /// Meshes that are kept: enough for one picture's few outlines, and at most some tens of megabytes.
@@ -33,9 +32,8 @@ pub struct Scratch {
     pub(crate) circle: Profile,
     pub(crate) inside: Inside,
     pub(crate) fusion: Fusion,
-    pub(crate) strips: StripScratch,
     pub(crate) halving: HalvingScratch,
-    /// Meshes that took a triangulation.
+    /// Meshes that took a triangulation, and templates of strips.
     pub(crate) meshes: MeshCache,
     /// The columns of a row that are to be drawn.
     pub(crate) wanted: Vec<Range<i64>>,
@@ -64,7 +62,6 @@ impl Scratch {
             circle: Profile::default(),
             inside: Inside::default(),
             fusion: Fusion::default(),
-            strips: StripScratch::default(),
             halving: HalvingScratch::default(),
             meshes: MeshCache::new(KEPT_MESHES),
             wanted: Vec::new(),

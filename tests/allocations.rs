@@ -139,6 +139,34 @@ fn a_warm_mesh_of_a_rounded_rectangle_takes_no_memory() {
 }
 
 #[test]
+fn a_mesh_of_known_corners_takes_no_memory_whatever_its_size() {
+    let (mut buffers, mut scratch) = (MeshBuffers::<u16>::new(), Scratch::new());
+    let mut mesh = |size: [f32; 2], round: f32, radius: f32| {
+        let shape = Shape::rounded_rect(3.0, 4.0, size[0], size[1], round).unwrap();
+        let light = Light::directional([0.0, 3.0], radius).unwrap();
+        let shadow = light.cast(&shape, 1.0, 0.0).unwrap();
+        buffers.clear();
+        let mut quality = None;
+        let taken = allocation_counter::measure(|| {
+            let tolerance = Tolerance::ONE_LEVEL;
+            quality = Some(shadow.mesh_into(&mut buffers, tolerance, &mut scratch));
+        });
+        assert!(quality.unwrap().unwrap().complete);
+        taken.count_total
+    };
+    // Cards and pills, which only grow longer; and cards that rise a little.
+    mesh([200.0, 100.0], 8.0, 10.0);
+    mesh([200.0, 40.0], 20.0, 10.0);
+    for more in [0.5, 60.0, 700.0] {
+        assert_eq!(mesh([200.0 + more, 100.0 + more], 8.0, 10.0), 0);
+        assert_eq!(mesh([200.0 + more, 40.0], 20.0, 10.0), 0);
+    }
+    for radius in [9.5, 10.1, 10.3] {
+        assert_eq!(mesh([200.0, 100.0], 8.0, radius), 0);
+    }
+}
+
+#[test]
 fn a_warm_mesh_of_another_outline_takes_no_memory_where_it_stays() {
     let light = Light::android(200.0).unwrap();
     let points = [[20.0, 20.0], [90.0, 30.0], [40.0, 50.0], [60.0, 110.0]];

@@ -5,9 +5,11 @@ use core::num::NonZeroUsize;
 
 use glam::DVec2;
 
+use super::strips::StripScratch;
 use super::{MeshOptions, Profile, ShadowMesh};
 use crate::outline::Edge;
 use crate::path::{FillRule, Segment};
+use crate::scratch::Scratch;
 use crate::shadow::Shadow;
 use crate::shape::Cover;
 
@@ -16,6 +18,11 @@ use crate::shape::Cover;
 /// Shadows are taken for the same where their outlines, wherever they are, differ by so little that a tenth of the tolerance
 /// covers it; with penumbra radius 0, and for other [profiles](Profile) than the disc's, where they do not differ at all.
 /// A shadow whose numbers are rounded differently elsewhere may be made anew, never drawn wrong.
+///
+/// The mesh of a rounded rectangle whose ends do not feel each other across the penumbra is four corners and straight strips
+/// between them. The last 64 such sets of corners are kept as well, whatever the lengths between them, so that a card, a row
+/// or a pill of a new size takes microseconds where its corners are known; equal corners serve all radii near their own, over the
+/// penumbra's. The mesh is the same either way.
 ///
 /// ```
 /// use core::num::NonZeroUsize;
@@ -32,12 +39,17 @@ use crate::shape::Cover;
 ///     assert!(offset[1] > f64::from(100.0 + scroll));
 /// }
 /// assert_eq!((cache.hits(), cache.misses()), (2, 1));
+/// // Another size is another mesh, of the same corners.
+/// let card = Shape::rounded_rect(16.0, 100.0, 320.0, 180.0, 12.0)?;
+/// cache.mesh(&light.cast(&card, 8.0, 0.0)?, Tolerance::ONE_LEVEL);
+/// assert_eq!((cache.misses(), cache.corner_hits(), cache.corner_misses()), (2, 1, 1));
 /// # Ok::<(), penumbral::Error>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct MeshCache {
     meshes: Vec<Kept>,
     max_meshes: NonZeroUsize,
+    pub(super) strips: StripScratch,
     /// The key that is asked for.
     key: Vec<u64>,
     hits: u64,
@@ -59,6 +71,7 @@ impl MeshCache {
         Self {
             meshes: Vec::new(),
             max_meshes,
+            strips: StripScratch::default(),
             key: Vec::new(),
             hits: 0,
             misses: 0,
@@ -77,14 +90,17 @@ impl MeshCache {
         let step = step(shadow, &options);
         self.key.clear();
         write_key(shadow, &options, origin, step, &mut self.key);
-        let index = self.find(|| {
+        let index = self.find(|strips| {
             let mut options = options;
             let mut alike = 0.0;
             if step > 0.0 {
                 alike = options.tolerance.as_levels() * ALIKE_SHARE;
                 options.tolerance = options.tolerance.divided(1.0 / (1.0 - ALIKE_SHARE));
             }
-            let mut mesh = shadow.moved(-origin).mesh(options);
+            let mut scratch = Scratch::new();
+            core::mem::swap(&mut scratch.meshes.strips, strips);
+            let mut mesh = shadow.moved(-origin).mesh_with(&options, &mut scratch);
+            core::mem::swap(&mut scratch.meshes.strips, strips);
             mesh.error_levels += alike;
             mesh
         });
@@ -100,19 +116,20 @@ impl MeshCache {
     ) -> &ShadowMesh {
         self.key.clear();
         write_key(shadow, options, DVec2::ZERO, 0.0, &mut self.key);
-        let index = self.find(make);
+        let index = self.find(|_| make());
         &self.meshes[index].mesh
     }
 
     /// Where the mesh with the key that is asked for is kept, made unless it was.
-    fn find(&mut self, make: impl FnOnce() -> ShadowMesh) -> usize {
+    fn find(&mut self, make: impl FnOnce(&mut StripScratch) -> ShadowMesh) -> usize {
         let found = self.meshes.iter().position(|kept| kept.key == self.key);
         let index = if let Some(index) = found {
             self.hits += 1;
             index
         } else {
             self.misses += 1;
-            self.keep(make())
+            let mesh = make(&mut self.strips);
+            self.keep(mesh)
         };
         self.meshes[index].used = self.hits + self.misses;
         index
@@ -157,6 +174,18 @@ impl MeshCache {
     #[must_use]
     pub fn misses(&self) -> u64 {
         self.misses
+    }
+
+    /// How often the mesh of a rounded rectangle had to be made, of corners that were there.
+    #[must_use]
+    pub fn corner_hits(&self) -> u64 {
+        self.strips.hits
+    }
+
+    /// How often its corners had to be made as well.
+    #[must_use]
+    pub fn corner_misses(&self) -> u64 {
+        self.strips.misses
     }
 }
 

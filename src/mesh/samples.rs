@@ -16,7 +16,7 @@ const MOST: f64 = 128.0;
 const ROUNDS: u32 = 2;
 
 /// Samples of one triangle, and the memory for them.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Samples {
     weights: Vec<Weights>,
     errors: Vec<f64>,

@@ -6,6 +6,7 @@
 )]
 
 mod checks;
+mod corners;
 mod halving;
 mod outlines;
 mod profiles;

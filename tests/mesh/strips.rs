@@ -150,7 +150,16 @@ fn one_interval_fewer_is_too_coarse() {
             break mesh;
         }
     };
-    assert!(dense_error(&shadow, &coarse, 6) > 1.0);
+    let count = rings(&coarse);
+    // Strips are for all corners about as round over the penumbra: fewer are too coarse for some of them.
+    let worst = [8.0, 7.8, 7.6, 7.4, 7.25].map(|elevation| {
+        let shadow = android_card(elevation);
+        let mesh = shadow.mesh(levels(coarser));
+        assert_eq!(rings(&mesh), count);
+        dense_error(&shadow, &mesh, 6)
+    });
+    let worst = worst.into_iter().fold(0.0, f64::max);
+    assert!(worst > 1.0, "{worst}");
 }
 
 #[test]

@@ -1,4 +1,8 @@
-//! Templates: strips for one set of corners, measured and made finer until they keep their tolerance.
+//! Templates: strips for one set of corners, or for all between two sets, measured and made finer until they keep their tolerance.
+//!
+//! Between two sets vertices go straight from where they are for the one to where they are for the other. At a point that moves
+//! with its triangle the error is then in between as well, but for what density itself bends on such a short way: that is
+//! measured half-way, where it is largest.
 
 use std::collections::HashSet;
 
@@ -6,15 +10,16 @@ use glam::DVec2;
 use libm::{ceil, sqrt};
 
 use super::corner::Corner;
-use super::fan::{Bends, Fan, Rings};
+use super::fan::{Bends, Counts, Fan, Rings};
+use super::join::{RingVertex, fill, join};
 use super::ray::MIDDLE;
 use super::{APART, SIGNS};
 use crate::mesh::samples::{Samples, Weights, mix, mix_densities};
 
 /// Strips in penumbra radii, for rectangles of any size that have these corners.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Template {
-    key: Option<([Corner; 4], f64)>,
+    key: Option<(Span, f64)>,
     pub(super) vertices: Vec<Vertex>,
     pub(super) triangles: Vec<[u32; 3]>,
     /// The largest error; infinite where no mesh was found.
@@ -23,52 +28,94 @@ pub(super) struct Template {
     pub(super) thinnest: f64,
 }
 
+/// The corners that a template is for: from these to those, or twice the same.
+pub(super) type Span = [[Corner; 4]; 2];
+
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Vertex {
     /// The corner that it belongs to, as in [`SIGNS`].
     pub(super) quarter: usize,
-    /// From where that corner's sides meet.
+    /// From where that corner's sides meet, and what is added on the way to the span's end.
     pub(super) offset: DVec2,
+    pub(super) shift: DVec2,
     pub(super) density: f32,
+    pub(super) rise: f32,
 }
 
-/// A vertex of a ring: where it comes round the middle, in quarters, and its number.
-#[derive(Debug, Clone, Copy)]
-struct RingVertex {
-    turn: f64,
-    index: u32,
-    at: DVec2,
-}
-
-/// Where a vertex of a template is, and comes from.
+/// A vertex for one set of corners.
 #[derive(Debug, Clone, Copy)]
 struct Place {
-    /// From the middle of the smallest rectangle that has the template's corners.
+    /// From the middle of the smallest rectangle that has the corners.
     at: DVec2,
+    quarter: usize,
+    offset: DVec2,
+    density: f32,
+    /// The point that it comes from.
     fan: usize,
     point: usize,
     /// Whether its density is 0 or 1 by definition.
     fixed: bool,
 }
 
-/// Makes templates. It keeps its memory.
-#[derive(Debug, Default)]
-pub(super) struct Builder {
+/// One set of corners, and the vertices for it.
+#[derive(Debug, Clone, Default)]
+struct State {
+    corners: [Corner; 4],
     fans: [Fan; 4],
-    outer: Vec<RingVertex>,
-    inner: Vec<RingVertex>,
-    /// The vertices of the template.
     places: Vec<Place>,
     /// For each fan's points, the least and the largest error found beside them.
     errors: [Vec<[f64; 2]>; 4],
+    /// The exact densities at few samples and at many.
+    few: Exact,
+    many: Exact,
+}
+
+/// Exact densities at the samples of triangles that stay where they are while their own densities are balanced.
+#[derive(Debug, Clone, Default)]
+struct Exact {
+    densities: Vec<f64>,
+    /// Whether there are all of them.
+    complete: bool,
+}
+
+/// Makes templates. It keeps its memory.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Builder {
+    /// The span's ends.
+    ends: [State; 2],
+    /// Half-way between them.
+    middle: State,
+    /// For each corner the first one that equals it: they share its fan.
+    fan_of: [usize; 4],
+    counts: [Counts; 4],
+    outer: Vec<RingVertex>,
+    inner: Vec<RingVertex>,
+    triangles: Vec<[u32; 3]>,
+    measure: Measure,
+}
+
+/// How closely errors are looked at.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Look {
+    /// At few samples.
+    Few,
+    /// At many.
+    Many,
+    /// And at the tops beside them, until one is above the limit.
+    Tops { limit: f64 },
+}
+
+/// What measuring errors takes.
+#[derive(Debug, Clone, Default)]
+struct Measure {
     /// The triangles of one corner that speak for those of equal corners, by their fan and points.
     measured: HashSet<[usize; 4]>,
     samples: Samples,
 }
 
 impl Template {
-    pub(super) fn is_for(&self, corners: &[Corner; 4], levels: f64) -> bool {
-        self.key == Some((*corners, levels))
+    pub(super) fn is_for(&self, span: &Span, levels: f64) -> bool {
+        self.key.is_some_and(|key| key == (*span, levels))
     }
 }
 
@@ -108,39 +155,40 @@ const BALANCE: f64 = 0.8;
 const BESIDE: f64 = 0.2;
 
 impl Builder {
-    /// Makes the template for corners within a tolerance.
-    pub(super) fn build(&mut self, corners: &[Corner; 4], levels: f64, template: &mut Template) {
-        template.key = Some((*corners, levels));
-        // Equal corners share a fan.
-        let fan_of =
+    /// Makes the template for a span of corners within a tolerance.
+    pub(super) fn build(&mut self, span: &Span, levels: f64, template: &mut Template) {
+        template.key = Some((*span, levels));
+        let corners = &span[0];
+        self.fan_of =
             [0, 1, 2, 3].map(|i: usize| (0..i).find(|&j| corners[j] == corners[i]).unwrap_or(i));
+        // Of a span without length one end is all.
+        let count = if span[0] == span[1] { 1 } else { 2 };
         let mut bends = Bends::default();
-        for i in (0..4).filter(|&i| fan_of[i] == i) {
-            bends = bends.max(self.fans[i].sample(&corners[i]));
+        for (end, corners) in self.ends[..count].iter_mut().zip(span) {
+            end.corners = *corners;
+            for i in (0..4).filter(|&i| self.fan_of[i] == i) {
+                bends = bends.max(end.fans[i].sample(&corners[i]));
+            }
         }
         let limit = SAMPLED * levels / 255.0;
         let mut aim = FIRST_AIM * limit;
         for _ in 0..TRIES {
             let rings = Rings {
-                anchored: fan_of != [0; 4],
+                anchored: self.fan_of != [0; 4],
                 ..rings(&bends, aim)
             };
-            let umbra = corners[0].has_umbra();
-            let placed = (0..4)
-                .filter(|&i| fan_of[i] == i)
-                .all(|i| self.fans[i].place(&corners[i], &rings, umbra));
             let mut error = f64::INFINITY;
-            if placed && self.join_rings(corners, &fan_of, &rings, template) {
+            if self.place(count, &rings) && self.join(count, &rings) {
                 for _ in 0..=BALANCES {
-                    error = self.measure(corners, &fan_of, template, COARSE, f64::INFINITY);
+                    error = self.error(count, limit);
                     if error <= limit {
-                        error = self.measure(corners, &fan_of, template, FINE, NEAR * limit);
-                    }
-                    if error <= limit {
+                        self.finish(count, template);
                         template.error_levels = error / SAMPLED * 255.0;
                         return;
                     }
-                    self.balance(template);
+                    for end in &mut self.ends[..count] {
+                        end.balance();
+                    }
                 }
             }
             aim *= (limit / error).clamp(FINEST_STEP, COARSEST_STEP);
@@ -148,153 +196,340 @@ impl Builder {
         template.error_levels = f64::INFINITY;
     }
 
-    /// Joins the fans' rings to triangles; no where they would cross.
-    fn join_rings(
-        &mut self,
-        corners: &[Corner; 4],
-        fan_of: &[usize; 4],
-        rings: &Rings,
-        template: &mut Template,
-    ) -> bool {
-        template.vertices.clear();
-        template.triangles.clear();
-        template.thinnest = f64::INFINITY;
-        self.places.clear();
-        let half = smallest(corners);
-        let mut sound = true;
-        let umbra = corners[0].has_umbra();
-        let last = rings.count() + 1;
-        for ring in 0..=last {
-            self.inner.clear();
-            for (quarter, (corner, sign)) in corners.iter().zip(SIGNS).enumerate() {
-                let fan = &self.fans[fan_of[quarter]];
-                let first = fan.ring(ring).start;
-                let points = &fan.points[fan.ring(ring)];
-                // Mirrored once, a corner runs the other way round.
-                let mirrored = quarter % 2 == 1;
-                for i in 0..points.len() {
-                    let point = points[if mirrored { points.len() - 1 - i } else { i }];
-                    let turn = point.turn();
-                    let mut vertex = RingVertex {
-                        turn: quarter as f64 + if mirrored { 1.0 - turn } else { turn },
-                        index: template.vertices.len() as u32,
-                        at: sign * (half - corner.tip + point.at),
-                    };
-                    // Of a narrow umbra, or none, corners coincide.
-                    let twins = [self.inner.last(), self.inner.first()]
-                        .into_iter()
-                        .flatten();
-                    let near = |twin: &&RingVertex| (twin.at - vertex.at).length() < SAME;
-                    if let Some(twin) = { twins }.find(near) {
-                        vertex.index = twin.index;
-                    } else {
-                        self.places.push(Place {
-                            at: vertex.at,
-                            fan: fan_of[quarter],
-                            point: first + if mirrored { points.len() - 1 - i } else { i },
-                            fixed: ring == 0 || (umbra && ring == last),
-                        });
-                        template.vertices.push(Vertex {
-                            quarter,
-                            offset: sign * (point.at - corner.tip),
-                            density: point.density as f32,
-                        });
-                    }
-                    self.inner.push(vertex);
+    /// Places the points of all fans, as many for the one end as for the other; no where a strip has no width.
+    fn place(&mut self, count: usize, rings: &Rings) -> bool {
+        let Self {
+            ends,
+            fan_of,
+            counts,
+            ..
+        } = self;
+        let ends = &mut ends[..count];
+        for i in (0..4).filter(|&i| fan_of[i] == i) {
+            counts[i].clear();
+            for State { corners, fans, .. } in &mut *ends {
+                if !fans[i].count(&corners[i], rings, &mut counts[i]) {
+                    return false;
                 }
             }
+            for end in &mut *ends {
+                end.fans[i].place(&end.corners[i], rings, &counts[i]);
+                end.errors[i].resize(end.fans[i].points.len(), [0.0; 2]);
+            }
+        }
+        true
+    }
+
+    /// Joins the fans' rings to triangles; no where they would cross.
+    fn join(&mut self, count: usize, rings: &Rings) -> bool {
+        let [first, rest @ ..] = &mut self.ends;
+        self.triangles.clear();
+        let umbra = first.corners[0].has_umbra();
+        first.clear();
+        for ring in 0..=rings.count() + 1 {
+            first.lay(ring, rings, &self.fan_of, &mut self.inner);
             if ring > 0 {
-                sound &= join(&self.outer, &self.inner, template);
+                join(&self.outer, &self.inner, &mut self.triangles);
             }
             core::mem::swap(&mut self.outer, &mut self.inner);
         }
         if umbra {
-            sound &= fill(&self.outer, template);
+            fill(&self.outer, &mut self.triangles);
         }
-        sound
+        for end in &mut rest[..count - 1] {
+            end.clear();
+            for ring in 0..=rings.count() + 1 {
+                end.lay(ring, rings, &self.fan_of, &mut self.inner);
+            }
+        }
+        self.ends[..count]
+            .iter()
+            .all(|end| end.thinnest(&self.triangles) > 0.0)
     }
 
-    /// The largest error of the template's triangles, in density, by samples; each vertex keeps the extremes beside it.
-    /// Where a sample's error is above `near` the top beside it counts.
-    fn measure(
+    /// The largest error, in density: looked at more closely as long as it is not too large.
+    fn error(&mut self, count: usize, limit: f64) -> f64 {
+        let Self {
+            ends,
+            middle,
+            fan_of,
+            triangles,
+            measure,
+            ..
+        } = self;
+        let ends = &mut ends[..count];
+        let mut worst = f64::INFINITY;
+        for look in [Look::Few, Look::Many, Look::Tops { limit }] {
+            let errors = ends
+                .iter_mut()
+                .map(|end| measure.error(end, fan_of, triangles, look));
+            worst = errors.fold(0.0, f64::max);
+            if worst > limit {
+                return worst;
+            }
+        }
+        if let [from, to] = ends {
+            middle.between(from, to);
+            if middle.thinnest(triangles) <= 0.0 {
+                return f64::INFINITY;
+            }
+            worst = worst.max(measure.error(middle, fan_of, triangles, Look::Tops { limit }));
+        }
+        worst
+    }
+
+    /// Writes what was found into a template.
+    fn finish(&self, count: usize, template: &mut Template) {
+        let [from, to] = [&self.ends[0], &self.ends[count - 1]];
+        template.vertices.clear();
+        let vertices = from.places.iter().zip(&to.places).map(|(from, to)| Vertex {
+            quarter: from.quarter,
+            offset: from.offset,
+            shift: to.offset - from.offset,
+            density: from.density,
+            rise: to.density - from.density,
+        });
+        template.vertices.extend(vertices);
+        template.triangles.clone_from(&self.triangles);
+        template.thinnest = from.thinnest(&template.triangles);
+        if count > 1 {
+            for state in [to, &self.middle] {
+                template.thinnest = template.thinnest.min(state.thinnest(&template.triangles));
+            }
+        }
+    }
+}
+
+impl State {
+    /// Forgets the vertices.
+    fn clear(&mut self) {
+        self.places.clear();
+        for exact in [&mut self.few, &mut self.many] {
+            exact.densities.clear();
+            exact.complete = false;
+        }
+    }
+
+    /// Lays a ring through the points of all corners.
+    fn lay(&mut self, ring: usize, rings: &Rings, fan_of: &[usize; 4], laid: &mut Vec<RingVertex>) {
+        laid.clear();
+        let half = smallest(&self.corners);
+        let innermost = ring == rings.count() + 1;
+        let fixed = ring == 0 || (innermost && self.corners[0].has_umbra());
+        for (quarter, (corner, sign)) in self.corners.iter().zip(SIGNS).enumerate() {
+            let fan = &self.fans[fan_of[quarter]];
+            let first = fan.ring(ring).start;
+            let points = &fan.points[fan.ring(ring)];
+            // Mirrored once, a corner runs the other way round.
+            let mirrored = quarter % 2 == 1;
+            for i in 0..points.len() {
+                let i = if mirrored { points.len() - 1 - i } else { i };
+                let point = points[i];
+                let turn = point.turn();
+                let mut vertex = RingVertex {
+                    turn: quarter as f64 + if mirrored { 1.0 - turn } else { turn },
+                    index: self.places.len() as u32,
+                    at: sign * (half - corner.tip + point.at),
+                };
+                // Of a narrow umbra, or none, corners coincide.
+                let twins = [laid.last(), laid.first()].into_iter().flatten();
+                let near = |twin: &&RingVertex| (twin.at - vertex.at).length() < SAME;
+                if let Some(twin) = { twins }.find(near) {
+                    vertex.index = twin.index;
+                } else {
+                    self.places.push(Place {
+                        at: vertex.at,
+                        quarter,
+                        offset: sign * (point.at - corner.tip),
+                        density: point.density as f32,
+                        fan: fan_of[quarter],
+                        point: first + i,
+                        fixed,
+                    });
+                }
+                laid.push(vertex);
+            }
+        }
+    }
+
+    /// Becomes what is half-way from one state to another.
+    fn between(&mut self, from: &Self, to: &Self) {
+        for ((corner, from), to) in self.corners.iter_mut().zip(&from.corners).zip(&to.corners) {
+            *corner = from.between(to);
+        }
+        self.errors.clone_from(&from.errors);
+        self.clear();
+        let places = from.places.iter().zip(&to.places);
+        self.places.extend(places.map(|(from, to)| Place {
+            at: from.at.midpoint(to.at),
+            offset: from.offset.midpoint(to.offset),
+            density: f32::midpoint(from.density, to.density),
+            ..*from
+        }));
+    }
+
+    /// The least height of a triangle; not above 0 where one is turned round.
+    fn thinnest(&self, triangles: &[[u32; 3]]) -> f64 {
+        let height = |corners: &[u32; 3]| {
+            let [a, b, c] = corners.map(|i| self.places[i as usize].at);
+            let longest = [b - a, c - b, a - c]
+                .map(DVec2::length)
+                .into_iter()
+                .fold(0.0, f64::max);
+            (b - a).perp_dot(c - a) / longest
+        };
+        triangles.iter().map(height).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Moves densities to where the errors beside each vertex are as large above as below.
+    fn balance(&mut self) {
+        for place in self.places.iter_mut().filter(|place| !place.fixed) {
+            let [least, most] = self.errors[place.fan][place.point];
+            let density = place.density - (BALANCE * f64::midpoint(least, most)) as f32;
+            place.density = density.clamp(0.0, 1.0);
+        }
+    }
+}
+
+impl Measure {
+    /// The largest error of triangles, in density; each vertex keeps the extremes of the samples beside it.
+    fn error(
         &mut self,
-        corners: &[Corner; 4],
+        state: &mut State,
         fan_of: &[usize; 4],
-        template: &Template,
-        parts: u32,
-        near: f64,
+        triangles: &[[u32; 3]],
+        look: Look,
     ) -> f64 {
+        let State {
+            corners,
+            places: all,
+            errors: beside,
+            few,
+            many,
+            ..
+        } = state;
+        let (exact, parts) = match look {
+            Look::Few => (few, COARSE),
+            Look::Many | Look::Tops { .. } => (many, FINE),
+        };
+        let limit = match look {
+            Look::Few | Look::Many => f64::INFINITY,
+            Look::Tops { limit } => limit,
+        };
+        let mut known = 0;
         let half = smallest(corners);
-        let whole = |stretch: f64| Corner {
+        let whole = |stretch: DVec2| Corner {
             tip: half + stretch,
             far: -half - stretch,
             radii: corners.map(|corner| corner.radii[0]),
         };
-        let stretches = corners[0].far.x.is_infinite();
+        let longer = |axis: usize| {
+            if corners[0].far[axis].is_infinite() {
+                STRETCH
+            } else {
+                0.0
+            }
+        };
+        let longest = DVec2::new(longer(0), longer(1));
         // A few large triangles take more samples each.
-        let more = sqrt(FEW / template.triangles.len() as f64) as u32;
+        let more = sqrt(FEW / triangles.len() as f64) as u32;
         let parts = parts * more.clamp(1, MOST);
-        for (errors, fan) in self.errors.iter_mut().zip(&self.fans) {
-            errors.clear();
-            errors.resize(fan.points.len(), [0.0; 2]);
+        // Tops come after all samples, whose extremes stay.
+        let extremes = limit.is_infinite();
+        if extremes {
+            for errors in &mut *beside {
+                errors.fill([0.0; 2]);
+            }
         }
         self.measured.clear();
         let mut most: f64 = 0.0;
-        for triangle in &template.triangles {
-            let places = triangle.map(|i| self.places[i as usize]);
+        for triangle in triangles {
+            let places = triangle.map(|i| all[i as usize]);
             let at = places.map(|place| place.at);
-            let densities = triangle.map(|i| f64::from(template.vertices[i as usize].density));
-            // One of equal corners speaks for all, but not for what lies between them, nor where rounding cuts the same
-            // four vertices the other way.
-            let quarters = triangle.map(|i| template.vertices[i as usize].quarter);
+            let densities = places.map(|place| f64::from(place.density));
+            let quarters = places.map(|place| place.quarter);
             let spans = quarters != [quarters[0]; 3];
-            let mut key = [fan_of[quarters[0]]; 4];
-            for (part, place) in key[1..].iter_mut().zip(&places) {
-                *part = place.point;
-            }
-            key[1..].sort_unstable();
-            let spoken_for = !spans && !self.measured.insert(key);
+            let spoken_for =
+                key(&places, fan_of, spans).is_some_and(|key| !self.measured.insert(key));
             let umbra = densities == [1.0; 3] && places.iter().all(|place| place.fixed);
             if spoken_for || umbra {
                 continue;
             }
-            for stretch in [0.0, STRETCH] {
-                if stretch > 0.0 && !(spans && stretches) {
-                    continue;
-                }
+            let lengths = if spans && longest != DVec2::ZERO {
+                2
+            } else {
+                1
+            };
+            for stretch in [DVec2::ZERO, longest].into_iter().take(lengths) {
                 let whole = whole(stretch);
                 let at = [0, 1, 2].map(|i: usize| at[i] + SIGNS[quarters[i]] * stretch);
+                let first = known;
                 let errors = |samples: &[Weights], errors: &mut [f64]| {
+                    let on_the_way_up = known > first;
+                    let density = |weights: Weights| whole.density(mix(at, weights));
                     for (&weights, error) in samples.iter().zip(errors) {
-                        let exact = whole.density(mix(at, weights));
+                        let exact = if on_the_way_up {
+                            density(weights)
+                        } else {
+                            if !exact.complete {
+                                exact.densities.push(density(weights));
+                            }
+                            known += 1;
+                            exact.densities[known - 1]
+                        };
                         *error = mix_densities(densities, weights) - exact;
                     }
                 };
-                let (error, _) = self.samples.worst(at, parts, SPACING, near, errors);
+                let (error, _) = self.samples.worst(at, parts, SPACING, NEAR * limit, errors);
+                if error > limit {
+                    return error;
+                }
                 most = most.max(error);
+                if !extremes {
+                    continue;
+                }
                 for (weights, error) in self.samples.all() {
                     for (place, weight) in places.into_iter().zip(weights) {
                         if weight >= BESIDE {
-                            let [least, most] = &mut self.errors[place.fan][place.point];
+                            let [least, most] = &mut beside[place.fan][place.point];
                             (*least, *most) = (least.min(error), most.max(error));
                         }
                     }
                 }
             }
         }
+        exact.complete = true;
         most
     }
+}
 
-    /// Moves densities to where the errors beside each vertex are as large above as below.
-    fn balance(&self, template: &mut Template) {
-        for (vertex, place) in template.vertices.iter_mut().zip(&self.places) {
-            if !place.fixed {
-                let [least, most] = self.errors[place.fan][place.point];
-                let density = vertex.density - (BALANCE * f64::midpoint(least, most)) as f32;
-                vertex.density = density.clamp(0.0, 1.0);
-            }
-        }
+/// What triangles have in common that are mirror images of one another: those of equal corners, and those between two of
+/// four equal ones, unless rounding cuts the same four vertices the other way.
+fn key(places: &[Place; 3], fan_of: &[usize; 4], spans: bool) -> Option<[usize; 4]> {
+    let [a, b, c] = places.map(|place| (place.quarter, place.point));
+    // The one alone at its corner, if there is one.
+    let [alone, first, second] = if a.0 == b.0 {
+        [c, a, b]
+    } else if b.0 == c.0 {
+        [a, b, c]
+    } else if c.0 == a.0 {
+        [b, c, a]
+    } else {
+        return None;
+    };
+    if spans {
+        let pair = [first.1.min(second.1), first.1.max(second.1)];
+        // Beside one another along x, along y, or opposite.
+        let way = match alone.0.abs_diff(first.0) {
+            2 => 2,
+            _ if alone.0 / 2 == first.0 / 2 => 0,
+            _ => 1,
+        };
+        return (*fan_of == [0; 4]).then_some([fan_of.len() + way, alone.1, pair[0], pair[1]]);
     }
+    let mut key = [fan_of[a.0], a.1, b.1, c.1];
+    key[1..].sort_unstable();
+    Some(key)
 }
 
 /// Vertices nearer than this, in penumbra radii, are one.
@@ -346,61 +581,3 @@ const SHARES: u8 = 20;
 
 /// Strips between two rings cost about as much beside their corners.
 const SIDE_COLUMNS: f64 = 2.0;
-
-/// Triangles between a ring and the next one inside; no where the rings cross.
-fn join(outer: &[RingVertex], inner: &[RingVertex], template: &mut Template) -> bool {
-    let at = |ring: &[RingVertex], i: usize| {
-        let vertex = ring[i % ring.len()];
-        let turns = if i < ring.len() { 0.0 } else { 4.0 };
-        (vertex.turn + turns, vertex)
-    };
-    let (mut i, mut j) = (0, 0);
-    let mut sound = true;
-    while i < outer.len() || j < inner.len() {
-        let (from, a) = at(outer, i);
-        let (to, next) = at(outer, i + 1);
-        let (inner_from, b) = at(inner, j);
-        let (inner_to, inner_next) = at(inner, j + 1);
-        // The side whose middle comes first: its triangle's apex is about opposite.
-        if j == inner.len() || (i < outer.len() && from + to <= inner_from + inner_to) {
-            sound &= triangle([a, next, b], template);
-            i += 1;
-        } else {
-            sound &= triangle([a, inner_next, b], template);
-            j += 1;
-        }
-    }
-    sound
-}
-
-/// Triangles that fill a convex ring.
-fn fill(ring: &[RingVertex], template: &mut Template) -> bool {
-    let (mut first, mut last) = (0, ring.len() - 1);
-    let mut sound = true;
-    while first + 1 < last {
-        sound &= triangle([ring[first], ring[first + 1], ring[last]], template);
-        first += 1;
-        if first + 1 < last {
-            sound &= triangle([ring[first], ring[last - 1], ring[last]], template);
-            last -= 1;
-        }
-    }
-    sound
-}
-
-/// Adds a triangle, unless two of its vertices are one; no if it is turned round.
-fn triangle(corners: [RingVertex; 3], template: &mut Template) -> bool {
-    let indices = corners.map(|corner| corner.index);
-    if indices[0] == indices[1] || indices[1] == indices[2] || indices[2] == indices[0] {
-        return true;
-    }
-    let [a, b, c] = corners.map(|corner| corner.at);
-    let longest = [b - a, c - b, a - c]
-        .map(DVec2::length)
-        .into_iter()
-        .fold(0.0, f64::max);
-    let height = (b - a).perp_dot(c - a) / longest;
-    template.triangles.push(indices);
-    template.thinnest = template.thinnest.min(height);
-    height > 0.0
-}

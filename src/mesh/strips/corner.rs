@@ -11,7 +11,7 @@ use glam::DVec2;
 use libm::{asin, sqrt};
 
 /// A rounded rectangle in units of the penumbra radius, about any origin.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Corner {
     /// The corner that looks: where its two sides meet, rounded or not.
     pub(super) tip: DVec2,
@@ -29,6 +29,15 @@ impl Corner {
         let right = clamped(max.x, [min.y, max.y], [below, tip]);
         let left = clamped(-min.x, [min.y, max.y], [far, left]);
         ((right + left) * FRAC_1_PI).clamp(0.0, 1.0)
+    }
+
+    /// The corner half-way to another one.
+    pub(super) fn between(&self, other: &Self) -> Self {
+        Self {
+            tip: self.tip.midpoint(other.tip),
+            far: self.far.midpoint(other.far),
+            radii: [0, 1, 2, 3].map(|i: usize| f64::midpoint(self.radii[i], other.radii[i])),
+        }
     }
 
     /// Whether a whole disc has room between the sides.
@@ -207,8 +216,16 @@ const LARGE: f64 = 32.0;
 /// The integral of `sqrt(1 - u²)` from 0 to `t`, to 2.5e-9, without an arcsine: π/4 less what is left to the disc's edge,
 /// which over v^1.5, v = 1 - |t|, is smooth. A polynomial through Chebyshev's points.
 fn half_disc(t: f64) -> f64 {
-    let v = (1.0 - t.abs()).max(0.0);
-    let smooth = TAIL.iter().rev().fold(0.0, |sum, factor| sum * v + factor);
+    let v = 1.0 - t.abs();
+    if v <= 0.0 {
+        return FRAC_PI_4.copysign(t);
+    }
+    // In pairs, which don't wait for one another.
+    let [a, b, c, d, e, f, g, h] = TAIL;
+    let (squared, pair) = (v * v, |low: f64, high: f64| low + high * v);
+    let low = pair(a, b) + pair(c, d) * squared;
+    let high = pair(e, f) + pair(g, h) * squared;
+    let smooth = low + high * (squared * squared);
     (FRAC_PI_4 - v * sqrt(v) * smooth).copysign(t)
 }
 

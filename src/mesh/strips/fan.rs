@@ -1,6 +1,6 @@
 //! Where the vertices of a corner belong: on the knots of rays from its pole, and along the rings that join them.
 
-use core::f64::consts::FRAC_1_SQRT_2;
+use core::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_4};
 use core::ops::Range;
 
 use glam::DVec2;
@@ -49,8 +49,37 @@ impl Rings {
     }
 }
 
+/// How much a ring bends, and how much of it up to where the umbra has its corner, if that is beside the ring.
+#[derive(Debug, Clone, Copy)]
+struct RingBends {
+    total: f64,
+    tip: Option<f64>,
+}
+
+impl RingBends {
+    /// How many vertices the ring takes before the umbra's corner, if that has one, and how many after.
+    fn counts(&self, rings: &Rings) -> [f64; 2] {
+        let most = 4.0 * sqrt(rings.along);
+        match self.tip {
+            // Without a vertex there the last ring could cut the corner of a sharp umbra.
+            Some(tip) if !rings.anchored => {
+                [tip, self.total - tip].map(|bend| ceil((bend / most - 0.5).max(0.0)))
+            }
+            tip if rings.anchored => {
+                let tip = tip.unwrap_or(self.total);
+                [tip, self.total - tip].map(|bend| ceil(bend / most))
+            }
+            // Half of a step into a corner serves as well as where it begins, unless the corner beyond the side differs.
+            _ => [ceil(self.total / most).max(1.0), 0.0],
+        }
+    }
+}
+
+/// How many vertices each ring has, before the corner of the umbra and after it where the ring has one there.
+pub(super) type Counts = Vec<[f64; 2]>;
+
 /// The rays and vertices of one corner. Its pole is the origin.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Fan {
     rays: Vec<Ray>,
     /// Those of the ring that is being placed.
@@ -134,28 +163,47 @@ impl Fan {
         self.rays.iter().map(widths).fold([f64::INFINITY; 2], least)
     }
 
-    /// Places the vertices of every ring; no where the outermost or the innermost strip has no width.
-    pub(super) fn place(&mut self, corner: &Corner, rings: &Rings, umbra: bool) -> bool {
-        self.points.clear();
-        self.ends.clear();
-        let count = rings.count();
+    /// Counts the vertices of every ring, if they are more than were counted before; no where the outermost or the innermost
+    /// strip has no width.
+    pub(super) fn count(&mut self, corner: &Corner, rings: &Rings, counts: &mut Counts) -> bool {
         let [outer, inner] = self.end_widths(rings);
+        let umbra = corner.has_umbra();
         if outer < NARROWEST || (umbra && inner < NARROWEST) {
             return false;
         }
         let round = corner.radii[0];
-        let center = corner.tip - round;
-        self.arc(center, round + 1.0, BEYOND * outer, 0.0);
-        for ring in 0..count {
-            self.place_ring(corner, rings, ring);
+        counts.resize(rings.count() + 2, [0.0; 2]);
+        let mut more = |ring: usize, [before, after]: [f64; 2]| {
+            let [b, a] = counts[ring];
+            counts[ring] = [before.max(b), after.max(a)];
+        };
+        more(0, [tangents(round + 1.0, BEYOND * outer), 0.0]);
+        for ring in 0..rings.count() {
+            let bends = self.find_knots(corner, rings, ring);
+            more(ring + 1, bends.counts(rings));
         }
         if umbra {
-            self.arc(
-                corner.tip - round.max(1.0),
-                round - 1.0,
-                BEYOND * inner,
-                1.0,
+            more(
+                rings.count() + 1,
+                [tangents(round - 1.0, BEYOND * inner), 0.0],
             );
+        }
+        true
+    }
+
+    /// Places so many vertices of every ring.
+    pub(super) fn place(&mut self, corner: &Corner, rings: &Rings, counts: &Counts) {
+        self.points.clear();
+        self.ends.clear();
+        let round = corner.radii[0];
+        self.arc(corner.tip - round, round + 1.0, counts[0][0], 0.0);
+        for ring in 0..rings.count() {
+            let bends = self.find_knots(corner, rings, ring);
+            self.place_ring(corner, rings, &bends, counts[ring + 1]);
+        }
+        if corner.has_umbra() {
+            let center = corner.tip - round.max(1.0);
+            self.arc(center, round - 1.0, counts[rings.count() + 1][0], 1.0);
         } else {
             let pole = Point {
                 at: DVec2::ZERO,
@@ -164,7 +212,6 @@ impl Fan {
             self.points.push(pole);
             self.ends.push(self.points.len());
         }
-        true
     }
 
     /// Which of the points are a ring's, from the x axis on.
@@ -173,18 +220,14 @@ impl Fan {
         start..self.ends[ring]
     }
 
-    /// Tangents along a quarter circle, no corner of them more than `beyond` away from it.
-    fn arc(&mut self, center: DVec2, radius: f64, beyond: f64, density: f64) {
-        use core::f64::consts::FRAC_PI_4;
+    /// So many tangents' corners along a quarter circle.
+    fn arc(&mut self, center: DVec2, radius: f64, count: f64, density: f64) {
         if radius <= 0.0 {
             self.points.push(Point {
                 at: center,
                 density,
             });
         } else {
-            // 1 / cos - 1 is about half of the square.
-            let half = sqrt(2.0 * beyond / radius);
-            let count = ceil(FRAC_PI_4 / half).max(1.0);
             let half = FRAC_PI_4 / count;
             let reach = radius / cos(half);
             let (mut direction, turn) = (
@@ -202,8 +245,8 @@ impl Fan {
         self.ends.push(self.points.len());
     }
 
-    /// A ring between the outermost loop and the innermost.
-    fn place_ring(&mut self, corner: &Corner, rings: &Rings, ring: usize) {
+    /// Finds where a ring between the outermost loop and the innermost meets the rays, and how it bends.
+    fn find_knots(&mut self, corner: &Corner, rings: &Rings, ring: usize) -> RingBends {
         self.knots.clear();
         let knots = self.rays.iter().map(|ray| ray.knot(ring, rings));
         self.knots.extend(knots);
@@ -229,31 +272,38 @@ impl Fan {
             let around = slope * way(piece).length() * turn.abs() / 2.0;
             self.knots[piece].bend = sqrt(along.max(geometry * around));
         }
-        let total: f64 = self.knots[..pieces].iter().map(|knot| knot.bend).sum();
-        let most = 4.0 * sqrt(rings.along);
         let last = ring + 1 == rings.count();
-        match self.tip_bend(corner).filter(|_| last && !rings.anchored) {
-            // Without a vertex there the last ring could cut the corner of a sharp umbra.
-            Some(tip) => {
-                let before = ceil((tip / most - 0.5).max(0.0));
-                let after = ceil(((total - tip) / most - 0.5).max(0.0));
+        RingBends {
+            total: self.knots[..pieces].iter().map(|knot| knot.bend).sum(),
+            tip: self.tip_bend(corner).filter(|_| last),
+        }
+    }
+
+    /// Places the vertices of the ring whose knots were found.
+    fn place_ring(
+        &mut self,
+        corner: &Corner,
+        rings: &Rings,
+        bends: &RingBends,
+        [before, after]: [f64; 2],
+    ) {
+        let total = bends.total;
+        match bends.tip {
+            Some(tip) if !rings.anchored => {
                 let step = tip / (before + 0.5);
                 self.place_knots(corner, step / 2.0, step, before);
                 let step = (total - tip) / (after + 0.5);
                 self.place_knots(corner, tip, step, after + 1.0);
             }
-            None if rings.anchored => {
-                let tip = self.tip_bend(corner).filter(|_| last).unwrap_or(total);
-                let step = tip / ceil(tip / most).max(1.0);
-                self.place_knots(corner, 0.0, step, (tip / step).round());
-                let rest = ceil((total - tip) / most);
-                self.place_knots(corner, tip, (total - tip) / rest.max(1.0), rest + 1.0);
+            tip if rings.anchored => {
+                let tip = tip.unwrap_or(total);
+                self.place_knots(corner, 0.0, tip / before.max(1.0), before);
+                let step = (total - tip) / after.max(1.0);
+                self.place_knots(corner, tip, step, after + 1.0);
             }
-            // Half of a step into a corner serves as well as where it begins, unless the corner beyond the side differs.
-            None => {
-                let count = ceil(total / most).max(1.0);
-                let step = total / count;
-                self.place_knots(corner, step / 2.0, step, count);
+            _ => {
+                let step = total / before;
+                self.place_knots(corner, step / 2.0, step, before);
             }
         }
         self.ends.push(self.points.len());
@@ -324,6 +374,15 @@ const NARROWEST: f64 = 1e-3;
 
 /// How far the corners of the two outermost loops may be from their arcs, over the width of the strip beside them.
 const BEYOND: f64 = 0.08;
+
+/// How many tangents of a quarter circle have no corner more than `beyond` away from it.
+fn tangents(radius: f64, beyond: f64) -> f64 {
+    if radius <= 0.0 {
+        return 0.0;
+    }
+    // 1 / cos - 1 is about half of the square.
+    ceil(FRAC_PI_4 / sqrt(2.0 * beyond / radius)).max(1.0)
+}
 
 /// How much density bends from one place with its gradient to another: the root of length times change of slope.
 fn bend(from: (DVec2, DVec2), to: (DVec2, DVec2)) -> f64 {
