@@ -6,6 +6,8 @@
 )]
 
 mod checks;
+mod fewest;
+mod growth;
 mod halving;
 mod outlines;
 mod profiles;
