@@ -184,11 +184,31 @@ fn fewest(shadow: &Shadow, tolerance: f32, rounds: usize) -> usize {
     best
 }
 
+/// The fewest triangles that searches have found so far within one level.
+const FOUND: [(&str, f32, usize); 3] =
+    [("triangle", 1.2, 328), ("L", 0.8, 646), ("star", 1.0, 997)];
+
+/// How many times as many meshes may have: what they have now, where 1.5 is wanted. Refinement only ever adds vertices: it does not
+/// take back those that later ones have made needless.
+const TIMES: f64 = 2.6;
+
+#[test]
+fn meshes_have_at_most_so_many_times_the_fewest_triangles() {
+    let shapes = shapes();
+    for (name, radius, found) in FOUND {
+        let (_, shape, _) = shapes.iter().find(|(other, ..)| *other == name).unwrap();
+        let mesh = cast(shape, radius).mesh(levels(1.0));
+        let times = mesh.triangles().count() as f64 / found as f64;
+        println!("{name} at r {radius}: {times:.2} times the {found} found");
+        assert!(times <= TIMES, "{name}: {times}");
+    }
+}
+
 /// By `cargo test --release --all-features --test mesh fewest -- --ignored --nocapture`; `PENUMBRAL_SHAPE=L` takes one shape,
 /// `PENUMBRAL_ROUNDS` sets for how long each is improved.
 #[test]
 #[ignore = "an hour"]
-fn a_search_finds_no_fewer_than_are_known() {
+fn a_search_finds_meshes_of_fewer_triangles() {
     let variable = |name: &str| std::env::var(name).ok();
     let rounds = variable("PENUMBRAL_ROUNDS").map_or(20, |rounds| rounds.parse().unwrap());
     let only = variable("PENUMBRAL_SHAPE");
@@ -198,7 +218,7 @@ fn a_search_finds_no_fewer_than_are_known() {
         }
         for radius in radii {
             let shadow = cast(&shape, radius);
-            for tolerance in [1.0_f32, 4.0] {
+            for tolerance in [4.0_f32, 1.0] {
                 let start = Instant::now();
                 let ours = shadow.mesh(levels(tolerance)).triangles().count();
                 let best = fewest(&shadow, tolerance, rounds);
@@ -207,6 +227,7 @@ fn a_search_finds_no_fewer_than_are_known() {
                     start.elapsed().as_secs_f64(),
                     ours as f64 / best as f64
                 );
+                assert!(best <= ours, "the search went astray");
             }
         }
     }
