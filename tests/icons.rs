@@ -230,7 +230,7 @@ fn icons_of_a_folder_taken_by_chance_have_meshes_of_both_kinds() {
         let options = MeshOptions::new(Tolerance::levels(levels).unwrap());
         for (kind, options) in [("few", options), ("quick", options.quick())] {
             println!("{kind}, within {levels}");
-            mesh_all(&icons, options, levels.into(), 1);
+            mesh_all(&icons, options, levels.into(), 4);
         }
     }
 }
