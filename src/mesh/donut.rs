@@ -1,7 +1,9 @@
 //! Meshes without what an opaque caster covers anyway.
 
+mod boxes;
 mod cut;
 
+use boxes::{Bounds, Boxes};
 use glam::DVec2;
 
 use super::{FACET, ShadowMesh, projection_circles, tangent_loops};
@@ -56,10 +58,15 @@ impl ShadowMesh {
                 points.iter().zip(next).map(|(&from, &to)| [from, to])
             })
             .collect();
+        let boxes = Boxes::new(lines.iter().map(|&line| bounds(line)).zip(0..));
+        let mut near = Vec::new();
         // Whatever could not be cut stays whole: what is left never lacks anything.
         Ok(cut.filtered(|triangle| {
-            !is_inside(triangle[0], &lines)
-                || lines.iter().any(|line| is_near(triangle, line, margin))
+            let [min, max] = bounds(*triangle);
+            boxes.meeting([min - margin, max + margin], &mut near);
+            near.iter()
+                .any(|&line| is_near(triangle, &lines[line], margin))
+                || !is_inside(triangle[0], &lines, &boxes, &mut near)
         }))
     }
 
@@ -69,7 +76,7 @@ impl ShadowMesh {
     }
 
     /// The mesh of the triangles that are kept.
-    fn filtered(&self, keep: impl Fn(&[DVec2; 3]) -> bool) -> Self {
+    fn filtered(&self, mut keep: impl FnMut(&[DVec2; 3]) -> bool) -> Self {
         let mut mesh = Self {
             vertices: Vec::new(),
             indices: Vec::new(),
@@ -102,13 +109,29 @@ const CUT_FLATNESS: f64 = 1.0 / 256.0;
 /// How far rounding may take the cut, in steps of `f32`.
 const ROUNDED: f64 = 4.0;
 
-/// Whether a ray from the point to growing x crosses an odd number of lines.
-fn is_inside(point: DVec2, lines: &[[DVec2; 2]]) -> bool {
-    let crossed = |&&[from, to]: &&[DVec2; 2]| {
+/// What holds some points.
+fn bounds<const N: usize>(points: [DVec2; N]) -> Bounds {
+    let nothing = [DVec2::INFINITY, DVec2::NEG_INFINITY];
+    points
+        .into_iter()
+        .fold(nothing, |[min, max], p| [min.min(p), max.max(p)])
+}
+
+/// Whether a ray from the point crosses an odd number of lines. It goes the short way: few lines are there.
+fn is_inside(point: DVec2, lines: &[[DVec2; 2]], boxes: &Boxes, near: &mut Vec<usize>) -> bool {
+    let [min, max] = boxes.bounds();
+    let upwards = max.y - min.y < max.x - min.x;
+    let turned = |p: DVec2| if upwards { DVec2::new(p.y, p.x) } else { p };
+    let mut end = point;
+    end[usize::from(upwards)] = f64::INFINITY;
+    boxes.meeting([point, end], near);
+    let point = turned(point);
+    let crossed = |&&line: &&usize| {
+        let [from, to] = lines[line].map(turned);
         let left = (to - from).perp_dot(point - from);
         (from.y > point.y) != (to.y > point.y) && (left > 0.0) == (to.y > from.y)
     };
-    lines.iter().filter(crossed).count() % 2 == 1
+    near.iter().filter(crossed).count() % 2 == 1
 }
 
 /// Whether a point of the triangle is nearer than `margin` to the line.

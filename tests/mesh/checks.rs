@@ -115,8 +115,17 @@ pub(crate) fn sanity_check_where_soft(mesh: &ShadowMesh) {
 /// The largest error in levels: on a lattice of `parts` parts a side of each triangle, of more where it is long for the
 /// penumbra, and from the worst samples on upwards.
 pub(crate) fn dense_error(shadow: &Shadow, mesh: &ShadowMesh, parts: u32) -> f64 {
+    dense_error_of(shadow, mesh.triangles(), parts)
+}
+
+/// The same of any triangles.
+pub(crate) fn dense_error_of(
+    shadow: &Shadow,
+    triangles: impl Iterator<Item = [MeshVertex; 3]>,
+    parts: u32,
+) -> f64 {
     let mut tops: Vec<(f64, [f64; 2], [MeshVertex; 3])> = Vec::new();
-    for corners in mesh.triangles() {
+    for corners in triangles {
         let [a, b, c] = corners.map(|corner| corner.position.map(f64::from));
         let length = |from: [f64; 2], to: [f64; 2]| (to[0] - from[0]).hypot(to[1] - from[1]);
         let longest = length(a, b).max(length(b, c)).max(length(c, a));

@@ -7,6 +7,8 @@
 
 mod checks;
 mod corners;
+mod fewest;
+mod growth;
 mod halving;
 mod outlines;
 mod profiles;

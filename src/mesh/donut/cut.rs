@@ -12,7 +12,8 @@ use glam::DVec2;
 use spade::handles::{FixedFaceHandle, FixedVertexHandle, PossiblyOuterTag};
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 
-use super::{crosses, distance};
+use super::boxes::Boxes;
+use super::{bounds, crosses, distance};
 use crate::mesh::samples::mix_densities;
 use crate::mesh::{MeshVertex, ShadowMesh};
 
@@ -145,15 +146,18 @@ impl Cut {
     /// Leads sides, but for those that are to stay `whole`, and the lines of loops by way of each other's ends and of the
     /// points where they cross.
     fn meet(&mut self, step: f64, whole: &HashSet<usize>) {
+        let box_of = |line: &Line| bounds(line.ends.map(|end| self.at(end)));
+        let loops = self.lines.iter().enumerate().skip(self.sides);
+        let loops = Boxes::new(loops.map(|(number, line)| (box_of(line), number)));
+        let mut near = Vec::new();
         for side in (0..self.sides).filter(|side| !whole.contains(side)) {
             let ends = self.lines[side].ends;
             let [a, b] = ends.map(|end| self.at(end));
-            for line in self.sides..self.lines.len() {
+            let [min, max] = bounds([a, b]);
+            loops.meeting([min - step, max + step], &mut near);
+            for &line in &near {
                 let others = self.lines[line].ends;
                 let [p, q] = others.map(|end| self.at(end));
-                if (a.min(b) - p.max(q)).max(p.min(q) - a.max(b)).max_element() > step {
-                    continue;
-                }
                 let beside = others.map(|end| distance(self.at(end), &[a, b]) <= step);
                 let touched = ends.map(|end| distance(self.at(end), &[p, q]) <= step);
                 for i in 0..2 {
@@ -187,19 +191,21 @@ impl Cut {
 
     /// Finds the triangles that are passed, and the densities of the vertices in them and on their sides.
     fn interpolate(&mut self) {
+        let place = |vertex: usize| DVec2::from(self.vertices[vertex].position.map(f64::from));
+        let points = (self.own..self.given).map(|vertex| ([place(vertex); 2], vertex));
+        let points = Boxes::new(points);
+        let mut near = Vec::new();
         for triangle in &mut self.triangles {
             let [a, b, c] = triangle.vertices.map(|i| self.vertices[i as usize]);
             let [at, from, to] = [a, b, c].map(|v| DVec2::from(v.position.map(f64::from)));
-            let (min, max) = (at.min(from).min(to), at.max(from).max(to));
             triangle.passed = triangle
                 .sides
                 .iter()
                 .any(|&side| !self.lines[side].via.is_empty());
-            for vertex in &mut self.vertices[self.own..self.given] {
+            points.meeting(bounds([at, from, to]), &mut near);
+            for &number in &near {
+                let vertex = &mut self.vertices[number];
                 let point = DVec2::from(vertex.position.map(f64::from));
-                if point.cmplt(min).any() || point.cmpgt(max).any() {
-                    continue;
-                }
                 let parts =
                     [[from, to], [to, at], [at, from]].map(|[s, t]| (t - s).perp_dot(point - s));
                 let whole: f64 = parts.iter().sum();
@@ -343,4 +349,103 @@ impl Parts {
 /// A key for a position: both zeros are one.
 fn bits(position: [f32; 2]) -> [u32; 2] {
     position.map(|x| (x + 0.0).to_bits())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A square of `side` from the origin in two halves, its density growing along both axes.
+    fn square(side: f32) -> ShadowMesh {
+        let vertex = |x: f32, y: f32| MeshVertex {
+            position: [x, y],
+            density: (x + 2.0 * y) / (3.0 * side),
+        };
+        ShadowMesh {
+            vertices: vec![
+                vertex(0.0, 0.0),
+                vertex(side, 0.0),
+                vertex(side, side),
+                vertex(0.0, side),
+            ],
+            indices: vec![0, 1, 2, 0, 2, 3],
+            ..ShadowMesh::empty()
+        }
+    }
+
+    fn points(points: &[[f64; 2]]) -> Vec<DVec2> {
+        points.iter().copied().map(DVec2::from).collect()
+    }
+
+    /// All triangles have area, together the square's, and the field is the square's.
+    fn assert_same(vertices: &[MeshVertex], indices: &[u32], side: f32) {
+        let mut area = 0.0;
+        for corners in indices.as_chunks::<3>().0 {
+            let [a, b, c] =
+                corners.map(|i| DVec2::from(vertices[i as usize].position.map(f64::from)));
+            let double = (b - a).perp_dot(c - a);
+            assert!(double > 0.0);
+            area += double / 2.0;
+        }
+        let side = f64::from(side);
+        assert!((area - side * side).abs() < 1e-6 * side * side, "{area}");
+        for &corner in indices {
+            let MeshVertex { position, density } = vertices[corner as usize];
+            let [x, y] = position.map(f64::from);
+            assert!((f64::from(density) - (x + 2.0 * y) / (3.0 * side)).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn a_loop_that_is_in_its_own_way_is_given_up_in_part() {
+        // Its lines cross one another where no vertex is: the later one is refused.
+        let bow = points(&[[1.0, 1.0], [7.0, 6.0], [7.0, 1.0], [1.0, 6.5]]);
+        let mesh = square(8.0);
+        let cut = cut(&mesh, &[bow], 1e-6);
+        assert!(cut.indices.len() > mesh.indices.len());
+        assert_same(&cut.vertices, &cut.indices, 8.0);
+    }
+
+    #[test]
+    fn sides_that_stay_whole_refuse_the_loop_and_nothing_is_torn() {
+        let mesh = square(8.0);
+        let mut cut = Cut::new(&mesh, &[inset()]);
+        let whole: HashSet<usize> = (0..cut.sides).collect();
+        cut.meet(1e-6, &whole);
+        cut.interpolate();
+        let sides = &cut.lines[..cut.sides];
+        assert!(sides.iter().all(|side| side.via.is_empty()));
+        let triangles = cut.triangles().unwrap().concat();
+        assert!(triangles.len() > mesh.indices.len());
+        assert_same(&cut.vertices, &triangles, 8.0);
+    }
+
+    /// A loop about most of the square, no vertex of it on the diagonal.
+    fn inset() -> Vec<DVec2> {
+        points(&[[1.0, 1.5], [7.0, 1.0], [7.0, 7.5], [1.0, 7.0]])
+    }
+
+    /// The square and a triangle over it whose sides cross the square's.
+    fn with_one_more(corners: [[f32; 2]; 3]) -> ShadowMesh {
+        let mut mesh = square(8.0);
+        let density = 0.5;
+        let vertex = |position| MeshVertex { position, density };
+        mesh.vertices.extend(corners.map(vertex));
+        mesh.indices.extend([4, 5, 6]);
+        mesh
+    }
+
+    #[test]
+    fn sides_that_cannot_be_divided_stay_whole() {
+        // The square's sides are in the way of the triangle's: it stays as a whole, and all else is cut.
+        let mesh = with_one_more([[3.0, -2.0], [9.0, 3.0], [2.0, 9.0]]);
+        let cut = cut(&mesh, &[inset()], 1e-6);
+        let (triangle, others) = cut.indices.split_at(3);
+        assert_eq!(triangle, [4, 5, 6]);
+        assert!(others.len() > 6);
+        assert_same(&cut.vertices, others, 8.0);
+        // With a vertex of the loop in it there is no way to cut the two.
+        let mesh = with_one_more([[3.0, -2.0], [9.0, 0.5], [2.0, 9.0]]);
+        assert_eq!(super::cut(&mesh, &[inset()], 1e-6), mesh);
+    }
 }
