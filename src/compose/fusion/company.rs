@@ -1,7 +1,5 @@
 //! Who meets at a pixel, and what that means for the light.
 
-use glam::DVec2;
-
 use super::chords::Points;
 use super::member::{Kind, Member};
 use super::pixel::{REST, Seen, bit};
@@ -149,16 +147,6 @@ impl<'a> Company<'a> {
             met += hides;
         }
         held
-    }
-
-    /// A whole pixel that does not depend on what of them is seen, if all that hide a part of the disc are of one radius each.
-    pub(super) fn origin(&self) -> Option<DVec2> {
-        let mut origins = self.partial.iter().map(|of| match &of.member.kind {
-            Kind::Level(occluder) => Some(occluder.origin),
-            Kind::Tilted(_) => None,
-        });
-        let first = origins.next().flatten();
-        first.filter(|_| origins.all(|origin| origin.is_some()))
     }
 }
 

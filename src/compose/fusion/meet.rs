@@ -115,10 +115,10 @@ impl Meet {
     ) {
         let square = &company.square;
         let lanes = square.pixels as i64;
-        // Which pixels are worked on together does not depend on what is asked for: nor do the bits of what is found.
-        let origin = company.origin().unwrap_or(middle.floor());
-        let number = |x: f64| (x - origin.x).floor() as i64;
         let blocks = if square.is_wide() { BLOCKS } else { 1 };
+        // Which pixels are worked on together does not depend on what is asked for, nor on what is far away: nor do the bits of what
+        // is found.
+        let (mut origin, mut origin_until) = (middle.floor(), f64::MIN);
         let (mut known, mut placed) = (None, None);
         let (mut parallel, mut until) = (None, f64::MIN);
         let count = run.len();
@@ -142,8 +142,13 @@ impl Meet {
                 pixels.mend(pixel, cross * (shared - a * b));
                 continue;
             }
-            let lane = number(at.x).rem_euclid(lanes);
-            let first = number(at.x) - lane;
+            if at.x >= origin_until {
+                (origin, origin_until) = self.origin(company, at);
+                (known, placed) = (None, None);
+            }
+            let number = (at.x - origin.x).floor() as i64;
+            let lane = number.rem_euclid(lanes);
+            let first = number - lane;
             if known != Some(first) {
                 known = Some(first);
                 let asked = lane as usize..lanes.min(lane + (count - index) as i64) as usize;
@@ -178,6 +183,20 @@ impl Meet {
             };
             pixels.mend(pixel, more);
         }
+    }
+
+    /// A whole pixel from which those are counted that are worked on together, and up to which x to the right of a point it is that.
+    fn origin(&self, company: &Company<'_>, at: DVec2) -> (DVec2, f64) {
+        let (origin, until) = match company
+            .partial
+            .first()
+            .map(|of| (of.index, &of.member.kind))
+        {
+            Some((index, Kind::Level(occluder))) => occluder.origin(&self.near[index], at),
+            // Of tilted casters each pixel is alone.
+            _ => (None, f64::MAX),
+        };
+        (origin.unwrap_or(at.floor()), until)
     }
 
     /// Whether the disc about a point shows a single line of each of a pair, and these are parallel: then, whether they face one

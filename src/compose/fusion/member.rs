@@ -37,9 +37,8 @@ impl Member {
                 // Pixels are worked on together with others that may be beyond the grid.
                 let parts = shadow.parts_on(grid, LANES as f64);
                 let polygons: Vec<_> = parts.flat_map(of_part).collect();
-                let origin = shadow.hull().map_or(DVec2::ZERO, |(min, _)| min * scale);
                 let radius = (radius * scale).max(LEAST_RADIUS);
-                Kind::Level(Occluder::new(&polygons, scale, radius, origin.floor()))
+                Kind::Level(Occluder::new(&polygons, scale, radius))
             }
             AnyShadow::Tilted(shadow) => {
                 let place = |circle: &Circle| circle.placed(scale, DVec2::ZERO);

@@ -16,8 +16,6 @@ pub(super) struct Occluder {
     /// The penumbra radius in pixels.
     pub(super) radius: f64,
     loops: Vec<Loop>,
-    /// A whole pixel of its own, from the scene's origin.
-    pub(super) origin: DVec2,
 }
 
 #[derive(Debug, Clone, Default)]
@@ -64,10 +62,9 @@ impl NearRows {
 
 impl Occluder {
     /// Of polygons in pixels from the scene's origin, of which there are `scale` a unit of theirs.
-    pub(super) fn new(polygons: &[Vec<DVec2>], scale: f64, radius: f64, origin: DVec2) -> Self {
+    pub(super) fn new(polygons: &[Vec<DVec2>], scale: f64, radius: f64) -> Self {
         Self {
             radius,
-            origin,
             loops: polygons
                 .iter()
                 .filter_map(|polygon| Loop::new(polygon, scale))
@@ -84,6 +81,24 @@ impl Occluder {
                 out.push().become_part(of_loop, low, high);
             }
         }
+    }
+
+    /// A whole pixel that depends on nothing but the loops about a point, and up to which x to the right of it that stays so. `near`
+    /// is what rows of points with it may meet.
+    pub(super) fn origin(&self, near: &NearRows, at: DVec2) -> (Option<DVec2>, f64) {
+        let reach = self.radius + 1.0;
+        let (mut origin, mut until) = (None, f64::MAX);
+        for of_loop in near.loops() {
+            let (base, at) = (of_loop.base, at - of_loop.base);
+            let (left, right) = (of_loop.min.x - reach, of_loop.max.x + reach);
+            if at.x < left {
+                until = until.min(base.x + left);
+            } else if at.x < right && at.y > of_loop.min.y - reach && at.y < of_loop.max.y + reach {
+                until = until.min(base.x + right);
+                origin = origin.or(Some(base));
+            }
+        }
+        (origin, until)
     }
 
     /// The direction of the outline where the disc about a point meets it in a single line from one side to the other, or none;
@@ -137,7 +152,7 @@ impl Occluder {
                     .collect()
             })
             .collect();
-        Self::new(&polygons, 1.0, 1.0, DVec2::ZERO)
+        Self::new(&polygons, 1.0, 1.0)
     }
 
     pub(super) fn loops(&self) -> &[Loop] {
