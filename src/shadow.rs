@@ -4,6 +4,7 @@
 //! as every caster parallel to its receiver has them, are kept as an outline and that radius.
 
 use core::borrow::Borrow;
+use core::ops::Range;
 use std::borrow::Cow;
 use std::sync::OnceLock;
 
@@ -15,7 +16,7 @@ use crate::density::{self, PixelOptions, averaged_side};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::light::Projection;
-use crate::outline::{Edge, Fineness, Outline, Winding, resolve};
+use crate::outline::{self, Edge, Fineness, Outline, Winding, resolve};
 use crate::paint::Paint;
 use crate::plan;
 use crate::scratch::Scratch;
@@ -28,6 +29,8 @@ pub struct Shadow {
     radius: f64,
     /// The loops of the shapes made of lines and circular arcs.
     fixed: Outline,
+    /// Loops among them that several shapes make together, and the boxes of these shapes.
+    united: Vec<(Range<usize>, Vec<(DVec2, DVec2)>)>,
     /// The shapes that need flattening, projected; those that may overlap together.
     curved: Vec<Vec<Shape>>,
     /// A box that holds its outline.
@@ -44,7 +47,7 @@ pub struct Shadow {
 
 /// What parts of a shadow are made of.
 enum Piece {
-    Loop(Vec<Edge>),
+    Loops(Vec<Vec<Edge>>),
     Shapes(Vec<Shape>),
 }
 
@@ -119,7 +122,10 @@ impl Shadow {
                 }
                 // Of arcs a union makes lines, as fine as the use asks for.
                 Some(outlines) if group.iter().all(Shape::is_straight) => {
+                    let first = shadow.fixed.loops.len();
                     shadow.fixed.append(unite(&outlines, 1.0));
+                    let boxes = group.iter().filter_map(Shape::hull).collect();
+                    shadow.united.push((first..shadow.fixed.loops.len(), boxes));
                 }
                 _ => shadow.curved.push(group),
             }
@@ -148,39 +154,67 @@ impl Shadow {
         } else {
             self.radius
         };
-        let fixed = self.fixed.loops.iter().filter_map(|edges| {
-            let outline = Outline {
-                loops: vec![edges.clone()],
-            };
-            let (min, max) = outline.bounds()?;
-            Some((min - reach, max + reach, Piece::Loop(edges.clone())))
-        });
-        let curved = self.curved.iter().filter_map(|shapes| {
-            let hulls = shapes.iter().filter_map(Shape::hull);
-            let (min, max) = hulls.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
-            Some((min - reach, max + reach, Piece::Shapes(shapes.clone())))
-        });
-        let groups = overlapping(fixed.chain(curved).collect());
+        // What several shapes are together is apart from what all of them are apart from, so that what is far away does not decide
+        // how a shape is drawn: a box about all of them would.
+        let mut pieces: Vec<Piece> = Vec::new();
+        let mut boxed: Vec<(DVec2, DVec2, usize)> = Vec::new();
+        let mut add = |boxes: &[(DVec2, DVec2)], piece: Piece| {
+            let number = pieces.len();
+            boxed.extend(
+                boxes
+                    .iter()
+                    .map(|(min, max)| (*min - reach, *max + reach, number)),
+            );
+            pieces.push(piece);
+        };
+        let mut next = 0;
+        for (loops, boxes) in &self.united {
+            self.add_loops(next..loops.start, &mut add);
+            add(
+                boxes,
+                Piece::Loops(self.fixed.loops[loops.clone()].to_vec()),
+            );
+            next = loops.end;
+        }
+        self.add_loops(next..self.fixed.loops.len(), &mut add);
+        for shapes in &self.curved {
+            let boxes: Vec<_> = shapes.iter().filter_map(Shape::hull).collect();
+            add(&boxes, Piece::Shapes(shapes.clone()));
+        }
+        let groups = overlapping(boxed);
         if groups.len() < 2 {
             return;
         }
+        let mut pieces: Vec<Option<Piece>> = pieces.into_iter().map(Some).collect();
         self.parts = groups
             .into_iter()
-            .map(|group| {
+            .map(|mut group| {
                 let mut part = Self {
                     radius: self.radius,
                     ..Self::default()
                 };
+                group.sort_unstable();
                 for piece in group {
-                    match piece {
-                        Piece::Loop(edges) => part.fixed.loops.push(edges),
-                        Piece::Shapes(shapes) => part.curved.push(shapes),
+                    // A piece of several boxes is there as many times.
+                    match pieces[piece].take() {
+                        Some(Piece::Loops(loops)) => part.fixed.loops.extend(loops),
+                        Some(Piece::Shapes(shapes)) => part.curved.push(shapes),
+                        None => {}
                     }
                 }
                 part.measure();
                 part
             })
             .collect();
+    }
+
+    /// Adds loops one by one, with their boxes.
+    fn add_loops(&self, loops: Range<usize>, mut add: impl FnMut(&[(DVec2, DVec2)], Piece)) {
+        for edges in &self.fixed.loops[loops] {
+            if let Some(bounds) = outline::bounds(edges.iter()) {
+                add(&[bounds], Piece::Loops(vec![edges.clone()]));
+            }
+        }
     }
 
     /// Finds what is asked for again and again.
@@ -204,7 +238,6 @@ impl Shadow {
         }
     }
 
-    /// The same outline seen through another penumbra radius.
     /// Those of [`Self::parts`] that a grid may show, or one that is larger by a `margin` of so many pixels.
     pub(crate) fn parts_on(&self, grid: &Grid, margin: f64) -> impl Iterator<Item = &Self> {
         let per_unit = grid.pixels_per_unit();
@@ -215,10 +248,12 @@ impl Shadow {
         self.parts(per_unit).iter().filter(is_shown)
     }
 
+    /// The same outline seen through another penumbra radius.
     pub(crate) fn with_radius(&self, radius: f64) -> Self {
         let mut shadow = Self {
             radius,
             fixed: self.fixed.clone(),
+            united: self.united.clone(),
             curved: self.curved.clone(),
             ..Self::default()
         };
@@ -230,9 +265,16 @@ impl Shadow {
     pub(crate) fn moved(&self, offset: DVec2) -> Self {
         let affine = DAffine2::from_translation(offset);
         let moved = |group: &Vec<Shape>| group.iter().map(|shape| shape.mapped(&affine)).collect();
+        let united = |(loops, boxes): &(Range<usize>, Vec<(DVec2, DVec2)>)| {
+            let boxes = boxes
+                .iter()
+                .map(|(min, max)| (*min + offset, *max + offset));
+            (loops.clone(), boxes.collect())
+        };
         let mut shadow = Self {
             radius: self.radius,
             fixed: self.fixed.moved(offset),
+            united: self.united.iter().map(united).collect(),
             curved: self.curved.iter().map(moved).collect(),
             ..Self::default()
         };
@@ -728,7 +770,10 @@ mod tests {
         let light = Light::flutter();
         let both = light.cast_all(&[heart(), letter()], 6.0, 0.0).unwrap();
         let edges = drawn(&both, 0.1);
-        assert_eq!(edges.len(), both.exact_outline().edges().count());
+        // As fine as its pixels need.
+        let outline = both.outline(density::flatness(0.1, both.radius(), 1.0));
+        assert_eq!(edges.len(), outline.edges().count());
+        assert!(edges.len() < both.exact_outline().edges().count());
         // A hard edge's outline is as fine as pixels need.
         let hard = Light::directional([0.0, 0.0], 0.0).unwrap();
         let hard = hard.cast_all(&[heart(), letter()], 6.0, 0.0).unwrap();
