@@ -109,7 +109,7 @@ impl StripScratch {
     /// A template for corners, made unless it is kept, and where they are from its span's beginning to its end.
     fn template(&mut self, corners: &[Corner; 4], levels: f64) -> Option<(&Template, f64)> {
         let (mut place, mut found, mut made) = (0.0, None, false);
-        if let Some((span, at)) = span_of(corners) {
+        if let Some((span, at)) = span_of(corners).filter(|_| levels >= FINEST_SPANNED) {
             found = self.within(&span, levels, &mut made);
             place = at;
         }
@@ -150,6 +150,10 @@ impl StripScratch {
         (templates[recent[0]].error_levels <= levels).then_some(recent[0])
     }
 }
+
+/// The least tolerance at which corners share spans, in levels: of less, how density bends within one takes so much that there
+/// would be more triangles.
+const FINEST_SPANNED: f64 = 0.75;
 
 /// The span that equal corners which are apart are in, and where they are from its beginning to its end.
 fn span_of(corners: &[Corner; 4]) -> Option<(Span, f64)> {
