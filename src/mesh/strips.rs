@@ -109,7 +109,7 @@ impl StripScratch {
     /// A template for corners, made unless it is kept, and where they are from its span's beginning to its end.
     fn template(&mut self, corners: &[Corner; 4], levels: f64) -> Option<(&Template, f64)> {
         let (mut place, mut found, mut made) = (0.0, None, false);
-        if let Some((span, at)) = span_of(corners) {
+        if let Some((span, at)) = span_of(corners).filter(|_| levels >= FINEST_SPANNED) {
             found = self.within(&span, levels, &mut made);
             place = at;
         }
@@ -151,6 +151,10 @@ impl StripScratch {
     }
 }
 
+/// The least tolerance at which corners share spans, in levels: of less, how density bends within one takes so much that there
+/// would be more triangles.
+const FINEST_SPANNED: f64 = 0.75;
+
 /// The span that equal corners which are apart are in, and where they are from its beginning to its end.
 fn span_of(corners: &[Corner; 4]) -> Option<(Span, f64)> {
     let [corner, others @ ..] = corners;
@@ -166,11 +170,14 @@ fn span_of(corners: &[Corner; 4]) -> Option<(Span, f64)> {
 }
 
 /// The steps that a corner's radius, in penumbra radii, is between: eighths up to 1, and eighths of each power of two from
-/// there on. Just above 1 the umbra's corner begins to be round: there steps are as long as it is, and none where it
-/// is next to nothing.
+/// there on. Sharp corners are the same whatever the penumbra radius and need none. Just above 1 the umbra's corner begins to be
+/// round: there steps are as long as it is, and none where it is next to nothing.
 fn steps_beside(radius: f64) -> Option<[f64; 2]> {
     // The number without its fraction bits: the power of two at or below it.
     let power = |value: f64| f64::from_bits(value.to_bits() >> 52 << 52);
+    if radius == 0.0 {
+        return None;
+    }
     if radius > 1.0 && radius < 1.0 + STEP {
         let step = power(radius - 1.0);
         return (step >= LEAST_STEP).then_some([1.0 + step, 1.0 + 2.0 * step]);
@@ -278,7 +285,7 @@ mod tests {
             let middle = f64::midpoint(from, to);
             assert_eq!(steps_beside(middle), Some([from, to]));
         }
-        assert_eq!(steps_beside(0.0), Some([0.0, STEP]));
+        assert_eq!(steps_beside(0.0), None);
         assert_eq!(steps_beside(1.0), Some([1.0 - STEP, 1.0]));
     }
 }

@@ -31,12 +31,13 @@ impl Corner {
         ((right + left) * FRAC_1_PI).clamp(0.0, 1.0)
     }
 
-    /// The corner half-way to another one.
-    pub(super) fn between(&self, other: &Self) -> Self {
+    /// What is so far on the way to another corner that is felt as far.
+    pub(super) fn towards(&self, other: &Self, share: f64) -> Self {
+        let radius = |i: usize| self.radii[i] + (other.radii[i] - self.radii[i]) * share;
         Self {
-            tip: self.tip.midpoint(other.tip),
-            far: self.far.midpoint(other.far),
-            radii: [0, 1, 2, 3].map(|i: usize| f64::midpoint(self.radii[i], other.radii[i])),
+            tip: self.tip.lerp(other.tip, share),
+            far: self.far,
+            radii: [0, 1, 2, 3].map(radius),
         }
     }
 
