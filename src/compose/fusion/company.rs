@@ -2,7 +2,7 @@
 
 use super::chords::Points;
 use super::member::{Kind, Member};
-use super::pixel::{REST, Seen, bit};
+use super::pixel::Casts;
 use crate::density::lanes::LANES;
 use crate::density::quadrature;
 
@@ -52,11 +52,7 @@ pub(super) struct Square {
 }
 
 impl<'a> Company<'a> {
-    pub(super) fn of(seen: Seen, members: &'a [Member]) -> Self {
-        let has = |bits: u32, index: usize| bits & bit(index) != 0;
-        let is_full = |index: usize| has(seen.full(), index) && index < REST;
-        let is_partial =
-            |index: usize| has(seen.partial(), index) || index >= REST && has(seen.full(), index);
+    pub(super) fn of(casts: &Casts, members: &'a [Member]) -> Self {
         let mut company = Self {
             members: Vec::new(),
             partial: Vec::new(),
@@ -64,24 +60,28 @@ impl<'a> Company<'a> {
             square: Square::new(0.0, false),
             together: Together::Alone,
         };
-        let last = members
-            .iter()
-            .enumerate()
-            .position(|(index, member)| is_full(index) && member.opacity >= 1.0);
-        for (index, member) in members.iter().enumerate() {
-            let is_lit =
-                last.is_none_or(|last| index == last || member.strength > members[last].strength);
-            if !is_lit || !is_partial(index) && !is_full(index) {
+        let is_opaque = |cast: &&usize| members[**cast].opacity >= 1.0;
+        let last = casts.full.iter().find(is_opaque).copied();
+        let is_lit = |cast: usize| {
+            last.is_none_or(|last| cast == last || members[cast].strength > members[last].strength)
+        };
+        let partial = casts.partial.iter().map(|&cast| (cast, true));
+        let full = casts.full.iter().map(|&cast| (cast, false));
+        let mut seen: Vec<(usize, bool)> = partial.chain(full).collect();
+        seen.sort_unstable();
+        for (index, is_partial) in seen {
+            if !is_lit(index) {
                 continue;
             }
-            if is_partial(index) {
+            let member = &members[index];
+            if is_partial {
                 company.partial.push(Partial {
                     member,
                     at: company.members.len(),
                     index,
                 });
             }
-            company.full.push(if is_partial(index) { 0.0 } else { 1.0 });
+            company.full.push(if is_partial { 0.0 } else { 1.0 });
             company.members.push(member);
         }
         let sides = company.partial.iter().map(|of| of.member.averaged_side());
@@ -90,11 +90,12 @@ impl<'a> Company<'a> {
             .iter()
             .any(|of| matches!(of.member.kind, Kind::Tilted(_)));
         company.square = Square::new(sides.fold(0.0, f64::max), is_tilted);
-        company.together = company.find_together(seen);
+        company.together = company.find_together(casts.partial.len());
         company
     }
 
-    fn find_together(&self, seen: Seen) -> Together {
+    /// How it is found; `partial` members, lit or not, hide a part of the disc.
+    fn find_together(&self, partial: usize) -> Together {
         match *self.partial {
             [] | [_] => Together::Alone,
             [a, b] => {
@@ -103,7 +104,7 @@ impl<'a> Company<'a> {
                     (hidden[a.at], hidden[b.at]) = (of_a, of_b);
                     self.held_by_all(&hidden)
                 };
-                let is_known = seen.partial() >> REST == 0 && seen.partial().count_ones() == 2;
+                let is_known = partial == 2;
                 match at(1.0, 1.0) - at(1.0, 0.0) - at(0.0, 1.0) + at(0.0, 0.0) {
                     0.0 => Together::Alone,
                     cross => Together::Pair { cross, is_known },

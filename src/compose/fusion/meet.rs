@@ -74,7 +74,7 @@ impl Meet {
             rest.start = run.end;
             let company = companies
                 .entry(seen)
-                .or_insert_with(|| Company::of(seen, members));
+                .or_insert_with(|| Company::of(pixels.casts(seen), members));
             if matches!(company.together, Together::Alone) {
                 continue;
             }

@@ -1,6 +1,7 @@
 //! What is known of pixels after some of the casts.
 
 use core::ops::Range;
+use std::collections::BTreeMap;
 
 use fearless_simd::{Level, Simd, dispatch};
 
@@ -12,48 +13,65 @@ pub(super) struct Pixels {
     /// What the casts hold back of the light, and what of it has met any of them.
     held: Vec<f32>,
     met: Vec<f32>,
-    /// What the first two that hide a part of the disc hide.
+    /// What the first two that hide a part of the disc hide, and how many do.
     first: Vec<f32>,
     second: Vec<f32>,
+    partial: Vec<u32>,
     seen: Vec<Seen>,
+    sets: Sets,
 }
 
-/// The casts that hide a part of the disc as lower bits, those that hide all of it as upper ones. The last bit of both stands
-/// for all casts from there on.
+/// The casts that a pixel sees: which of the sets it is.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Seen(u32);
 
+/// Some casts of a group by their numbers, from the least on.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Casts {
+    /// Those that hide a part of the disc.
+    pub(super) partial: Vec<usize>,
+    /// Those that hide all of it.
+    pub(super) full: Vec<usize>,
+}
+
+/// The sets of casts that pixels have seen so far. Casts come one after the other: each set is made in one way.
+#[derive(Debug, Default)]
+struct Sets {
+    all: Vec<Casts>,
+    /// The set that one becomes with a cast that hides a part of the disc, or all of it.
+    joined: BTreeMap<(Seen, usize, bool), Seen>,
+}
+
+impl Sets {
+    /// Back to none but the empty one.
+    fn reset(&mut self) {
+        self.joined.clear();
+        self.all.clear();
+        self.all.push(Casts::default());
+    }
+
+    fn join(&mut self, seen: Seen, cast: usize, is_full: bool) -> Seen {
+        let all = &mut self.all;
+        let join = || {
+            let mut casts = all[seen.0 as usize].clone();
+            let list = if is_full {
+                &mut casts.full
+            } else {
+                &mut casts.partial
+            };
+            list.push(cast);
+            all.push(casts);
+            Seen(all.len() as u32 - 1)
+        };
+        *self
+            .joined
+            .entry((seen, cast, is_full))
+            .or_insert_with(join)
+    }
+}
+
 /// Densities within this of 0 and 1 are these.
 const ROUNDING: f32 = 1e-6;
-
-/// The first cast that has no bit for itself.
-pub(super) const REST: usize = 15;
-
-/// How far the bits of those that hide all are above the others.
-const FULL: u32 = 16;
-
-/// The bit of a cast among those of its group.
-pub(super) fn bit(index: usize) -> u32 {
-    1 << index.min(REST)
-}
-
-impl Seen {
-    /// The casts that hide a part of the disc, a bit each.
-    pub(super) fn partial(self) -> u32 {
-        self.0 & (bit(REST) * 2 - 1)
-    }
-
-    /// The casts that hide all of the disc, a bit each.
-    pub(super) fn full(self) -> u32 {
-        self.0 >> FULL
-    }
-
-    /// Whether several casts hide a part of the disc.
-    fn is_shared(self) -> bool {
-        let partial = self.partial();
-        partial & (partial.wrapping_sub(1) | bit(REST)) != 0
-    }
-}
 
 /// What rounding leaves beyond a shadow's ends would make a partial cast of none.
 #[inline(always)]
@@ -79,8 +97,11 @@ impl Pixels {
             list.clear();
             list.resize(count, 0.0);
         }
+        self.partial.clear();
+        self.partial.resize(count, 0);
         self.seen.clear();
         self.seen.resize(count, Seen::default());
+        self.sets.reset();
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -89,44 +110,76 @@ impl Pixels {
 
     /// Whether several casts hide a part of the disc from any pixel.
     pub(super) fn are_shared(&self) -> bool {
-        self.seen.iter().any(|seen| seen.is_shared())
+        self.partial.iter().any(|partial| *partial > 1)
     }
 
     /// Adds a cast that has one density at some pixels.
     pub(super) fn add_constant(&mut self, level: Level, at: Range<usize>, density: f32, by: By) {
-        dispatch!(level, simd => simd.vectorize(#[inline(always)] || {
-            self.add(at, core::iter::repeat(density), by);
-        }));
+        self.add(level, at, core::iter::repeat(density), by);
     }
 
     /// Adds a cast that has these densities at some pixels.
     pub(super) fn add_values(&mut self, level: Level, at: Range<usize>, densities: &[f32], by: By) {
+        self.add(level, at, densities.iter().copied(), by);
+    }
+
+    fn add(
+        &mut self,
+        level: Level,
+        at: Range<usize>,
+        densities: impl Iterator<Item = f32> + Clone,
+        by: By,
+    ) {
+        let densities = densities.map(rounded);
+        self.join(at.clone(), densities.clone(), by.cast);
         dispatch!(level, simd => simd.vectorize(#[inline(always)] || {
-            self.add(at, densities.iter().copied(), by);
+            self.hide(at, densities, by);
         }));
     }
 
     #[inline(always)]
-    fn add(&mut self, at: Range<usize>, densities: impl Iterator<Item = f32>, by: By) {
+    fn hide(&mut self, at: Range<usize>, densities: impl Iterator<Item = f32>, by: By) {
         let held = self.held[at.clone()].iter_mut();
         let met = self.met[at.clone()].iter_mut();
         let first = self.first[at.clone()].iter_mut();
         let second = self.second[at.clone()].iter_mut();
-        let seen = self.seen[at].iter_mut();
-        let pixels = held.zip(met).zip(first).zip(second).zip(seen);
-        for (((((held, met), first), second), seen), density) in pixels.zip(densities) {
-            let density = rounded(density);
+        let partial = self.partial[at].iter_mut();
+        let pixels = held.zip(met).zip(first).zip(second).zip(partial);
+        for (((((held, met), first), second), partial), density) in pixels.zip(densities) {
             let hides = by.opacity * density * (1.0 - *met);
             *held += by.strength * hides;
             *met += hides;
             let is_partial = density > 0.0 && density < 1.0;
-            let partial = seen.partial();
-            let is_first = is_partial && partial == 0;
-            let is_second = is_partial && partial != 0 && partial & partial.wrapping_sub(1) == 0;
-            *first = if is_first { density } else { *first };
-            *second = if is_second { density } else { *second };
-            let full = if density >= 1.0 { by.bit << FULL } else { 0 };
-            seen.0 |= if is_partial { by.bit } else { full };
+            *first = if is_partial && *partial == 0 {
+                density
+            } else {
+                *first
+            };
+            *second = if is_partial && *partial == 1 {
+                density
+            } else {
+                *second
+            };
+            *partial += u32::from(is_partial);
+        }
+    }
+
+    /// Notes which pixels see a cast.
+    fn join(&mut self, at: Range<usize>, densities: impl Iterator<Item = f32>, cast: usize) {
+        let mut last = None;
+        for (seen, density) in self.seen[at].iter_mut().zip(densities) {
+            if density == 0.0 {
+                continue;
+            }
+            let key = (*seen, density == 1.0);
+            *seen = match last {
+                Some((known, joined)) if known == key => joined,
+                _ => {
+                    let joined = self.sets.join(key.0, cast, key.1);
+                    last = Some((key, joined));
+                    joined
+                }
+            };
         }
     }
 
@@ -140,14 +193,21 @@ impl Pixels {
         [self.first[pixel], self.second[pixel]]
     }
 
+    /// The casts of a set.
+    pub(super) fn casts(&self, seen: Seen) -> &Casts {
+        &self.sets.all[seen.0 as usize]
+    }
+
     /// The next pixels that see the same casts, several of which hide a part of the disc.
     pub(super) fn next_shared(&self, at: Range<usize>) -> Option<(Seen, Range<usize>)> {
-        let all = &self.seen[at.clone()];
-        let start = all.iter().position(|seen| seen.is_shared())?;
-        let seen = all[start];
-        let same = all[start..].iter().take_while(|other| **other == seen);
-        let end = start + same.count();
-        Some((seen, at.start + start..at.start + end))
+        let partial = &self.partial[at.clone()];
+        let start = at.start + partial.iter().position(|partial| *partial > 1)?;
+        let seen = self.seen[start];
+        let same = self.seen[start..at.end].iter();
+        Some((
+            seen,
+            start..start + same.take_while(|other| **other == seen).count(),
+        ))
     }
 
     pub(super) fn mend(&mut self, pixel: usize, by: f32) {
@@ -161,7 +221,7 @@ impl Pixels {
 pub(super) struct By {
     strength: f32,
     opacity: f32,
-    bit: u32,
+    cast: usize,
 }
 
 impl By {
@@ -170,7 +230,7 @@ impl By {
         Self {
             strength: cast.strength as f32,
             opacity: cast.opacity as f32,
-            bit: bit(index),
+            cast: index,
         }
     }
 
