@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use fearless_simd::{Level, Simd, dispatch};
 
 use super::Cast;
+use crate::density::lanes::LANES;
 
 /// What is known of pixels after some of the casts: at first nothing. All lists are of one length.
 #[derive(Debug, Default)]
@@ -13,17 +14,30 @@ pub(super) struct Pixels {
     /// What the casts hold back of the light, and what of it has met any of them.
     held: Vec<f32>,
     met: Vec<f32>,
-    /// What the first two that hide a part of the disc hide, and how many do.
+    /// What the first two that hide a part of the disc hide.
     first: Vec<f32>,
     second: Vec<f32>,
-    partial: Vec<u32>,
     seen: Vec<Seen>,
     sets: Sets,
 }
 
-/// The casts that a pixel sees: which of the sets it is.
+/// The casts that a pixel sees: which of the sets it is, above two bits for how many of them hide a part of the disc.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Seen(u32);
+
+/// The count that stands for all larger ones.
+const MANY: u32 = 3;
+
+impl Seen {
+    #[inline(always)]
+    fn partial(self) -> u32 {
+        self.0 & MANY
+    }
+
+    fn set(self) -> usize {
+        (self.0 >> 2) as usize
+    }
+}
 
 /// Some casts of a group by their numbers, from the least on.
 #[derive(Debug, Clone, Default)]
@@ -53,15 +67,16 @@ impl Sets {
     fn join(&mut self, seen: Seen, cast: usize, is_full: bool) -> Seen {
         let all = &mut self.all;
         let join = || {
-            let mut casts = all[seen.0 as usize].clone();
+            let mut casts = all[seen.set()].clone();
             let list = if is_full {
                 &mut casts.full
             } else {
                 &mut casts.partial
             };
             list.push(cast);
+            let partial = (casts.partial.len() as u32).min(MANY);
             all.push(casts);
-            Seen(all.len() as u32 - 1)
+            Seen((all.len() as u32 - 1) << 2 | partial)
         };
         *self
             .joined
@@ -97,8 +112,6 @@ impl Pixels {
             list.clear();
             list.resize(count, 0.0);
         }
-        self.partial.clear();
-        self.partial.resize(count, 0);
         self.seen.clear();
         self.seen.resize(count, Seen::default());
         self.sets.reset();
@@ -110,30 +123,28 @@ impl Pixels {
 
     /// Whether several casts hide a part of the disc from any pixel.
     pub(super) fn are_shared(&self) -> bool {
-        self.partial.iter().any(|partial| *partial > 1)
+        self.seen.iter().any(|seen| seen.partial() > 1)
     }
 
     /// Adds a cast that has one density at some pixels.
     pub(super) fn add_constant(&mut self, level: Level, at: Range<usize>, density: f32, by: By) {
-        self.add(level, at, core::iter::repeat(density), by);
+        let density = rounded(density);
+        if density == 0.0 {
+            return;
+        }
+        dispatch!(level, simd => simd.vectorize(#[inline(always)] || {
+            self.hide(at.clone(), core::iter::repeat(density), by);
+        }));
+        for seen in self.seen[at].chunk_by_mut(|a, b| a == b) {
+            seen.fill(self.sets.join(seen[0], by.cast, density == 1.0));
+        }
     }
 
     /// Adds a cast that has these densities at some pixels.
     pub(super) fn add_values(&mut self, level: Level, at: Range<usize>, densities: &[f32], by: By) {
-        self.add(level, at, densities.iter().copied(), by);
-    }
-
-    fn add(
-        &mut self,
-        level: Level,
-        at: Range<usize>,
-        densities: impl Iterator<Item = f32> + Clone,
-        by: By,
-    ) {
-        let densities = densities.map(rounded);
-        self.join(at.clone(), densities.clone(), by.cast);
         dispatch!(level, simd => simd.vectorize(#[inline(always)] || {
-            self.hide(at, densities, by);
+            self.hide(at.clone(), densities.iter().map(|&density| rounded(density)), by);
+            self.join(at, densities, by.cast);
         }));
     }
 
@@ -143,43 +154,56 @@ impl Pixels {
         let met = self.met[at.clone()].iter_mut();
         let first = self.first[at.clone()].iter_mut();
         let second = self.second[at.clone()].iter_mut();
-        let partial = self.partial[at].iter_mut();
-        let pixels = held.zip(met).zip(first).zip(second).zip(partial);
-        for (((((held, met), first), second), partial), density) in pixels.zip(densities) {
+        let seen = self.seen[at].iter();
+        let pixels = held.zip(met).zip(first).zip(second).zip(seen);
+        for (((((held, met), first), second), seen), density) in pixels.zip(densities) {
             let hides = by.opacity * density * (1.0 - *met);
             *held += by.strength * hides;
             *met += hides;
             let is_partial = density > 0.0 && density < 1.0;
-            *first = if is_partial && *partial == 0 {
+            let before = seen.partial();
+            *first = if is_partial && before == 0 {
                 density
             } else {
                 *first
             };
-            *second = if is_partial && *partial == 1 {
+            *second = if is_partial && before == 1 {
                 density
             } else {
                 *second
             };
-            *partial += u32::from(is_partial);
         }
     }
 
     /// Notes which pixels see a cast.
-    fn join(&mut self, at: Range<usize>, densities: impl Iterator<Item = f32>, cast: usize) {
+    #[inline(always)]
+    fn join(&mut self, at: Range<usize>, densities: &[f32], cast: usize) {
         let mut last = None;
-        for (seen, density) in self.seen[at].iter_mut().zip(densities) {
-            if density == 0.0 {
-                continue;
-            }
-            let key = (*seen, density == 1.0);
-            *seen = match last {
-                Some((known, joined)) if known == key => joined,
-                _ => {
-                    let joined = self.sets.join(key.0, cast, key.1);
-                    last = Some((key, joined));
-                    joined
+        let seen = self.seen[at].chunks_mut(LANES);
+        for (seen, densities) in seen.zip(densities.chunks(LANES)) {
+            // Most of them are alike.
+            let first = seen[0];
+            let alike = seen.iter().fold(true, |all, seen| all & (*seen == first));
+            let are_partial = densities.iter().fold(alike, |all, density| {
+                all & (*density >= ROUNDING) & (*density <= 1.0 - ROUNDING)
+            });
+            let count = if are_partial { 1 } else { seen.len() };
+            for index in 0..count {
+                let density = rounded(densities[index]);
+                if density == 0.0 {
+                    continue;
                 }
-            };
+                let key = (seen[index], density == 1.0);
+                let joined = match last {
+                    Some((known, joined)) if known == key => joined,
+                    _ => self.sets.join(key.0, cast, key.1),
+                };
+                last = Some((key, joined));
+                seen[index] = joined;
+            }
+            if are_partial {
+                seen.fill(seen[0]);
+            }
         }
     }
 
@@ -195,13 +219,13 @@ impl Pixels {
 
     /// The casts of a set.
     pub(super) fn casts(&self, seen: Seen) -> &Casts {
-        &self.sets.all[seen.0 as usize]
+        &self.sets.all[seen.set()]
     }
 
     /// The next pixels that see the same casts, several of which hide a part of the disc.
     pub(super) fn next_shared(&self, at: Range<usize>) -> Option<(Seen, Range<usize>)> {
-        let partial = &self.partial[at.clone()];
-        let start = at.start + partial.iter().position(|partial| *partial > 1)?;
+        let mut pixels = self.seen[at.clone()].iter();
+        let start = at.start + pixels.position(|seen| seen.partial() > 1)?;
         let seen = self.seen[start];
         let same = self.seen[start..at.end].iter();
         Some((
