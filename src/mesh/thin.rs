@@ -1,8 +1,8 @@
 //! Fewer triangles: refinement never takes a vertex back, though later ones make many needless.
 //!
-//! Sides shrink to a point, one after another, where every triangle that changes stays within the limit. The vertex that is left gets the density in the middle of all that are within it. The triangles outside and in the umbra are
-//! there too, so that nothing comes to lie on anything else: the penumbra's two edges lose vertices only, and what a chord cuts off
-//! is measured as well.
+//! Sides shrink to a point, one after another, where every triangle that changes stays within the limit. The vertex that is left
+//! gets the density in the middle of all that are within it. The triangles outside and in the umbra are there too, so that nothing
+//! comes to lie on anything else: the penumbra's two edges lose vertices only, and what a chord cuts off is measured as well.
 
 use glam::DVec2;
 
@@ -25,6 +25,7 @@ const FLATTEST: f64 = 1e-3;
 /// The triangle that is not there any more.
 const GONE: [usize; 3] = [usize::MAX; 3];
 
+/// A vertex.
 #[derive(Debug, Clone)]
 pub(super) struct Corner {
     pub(super) at: DVec2,
@@ -50,6 +51,7 @@ impl Corner {
 pub(super) struct Triangle {
     pub(super) corners: [usize; 3],
     pub(super) region: Region,
+    /// The largest differences from the profile's density, and from the exact one.
     pub(super) error: f64,
     pub(super) exact_error: f64,
 }
