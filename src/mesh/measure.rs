@@ -26,6 +26,8 @@ pub(super) struct Assessment {
     pub(super) error: f64,
     /// Where that is.
     pub(super) worst: DVec2,
+    /// The largest of all samples, those on the way up to other tops too.
+    pub(super) most: f64,
     /// The largest difference from the exact density.
     pub(super) exact_error: f64,
     /// Whether all of it was looked at, and not only some samples.
@@ -76,7 +78,7 @@ impl Measure {
         surely: bool,
         limit: f64,
     ) -> Assessment {
-        let mut exact_error: f64 = 0.0;
+        let (mut most, mut exact_error) = (0.0_f64, 0.0_f64);
         let spacing = SPACING * self.radius();
         let Self {
             field,
@@ -99,6 +101,7 @@ impl Measure {
                 } else {
                     0.0
                 };
+                most = most.max(error.abs());
             }
         };
         let (parts, near) = if surely {
@@ -110,6 +113,7 @@ impl Measure {
         Assessment {
             error,
             worst: mix(at, worst),
+            most,
             exact_error,
             sure: surely,
         }

@@ -277,7 +277,7 @@ impl<'a> Thinning<'a> {
                 true,
                 self.limit,
             );
-            if assessment.error > self.limit {
+            if assessment.most > self.limit {
                 return None;
             }
             assessments.push(Some(assessment));
@@ -302,7 +302,7 @@ impl<'a> Thinning<'a> {
         let found = self
             .measure
             .assess(corners, [density; 3], [false; 3], true, limit);
-        (found.error <= limit).then_some(Fit {
+        (found.most <= limit).then_some(Fit {
             cut: found.exact_error,
             ..fit
         })
