@@ -56,7 +56,7 @@
 //! | `image.rs` | [`Image`]: casters with alpha |
 //! | `pose.rs`, `tilted.rs` | [`Pose`], [`TiltedShadow`]: casters that are not parallel to the light |
 //! | `density.rs`, `density/` | densities: the closed form at points, and on pixels by a method a file; bytes |
-//! | `mesh.rs`, `mesh/` | [`ShadowMesh`]: strips; halved squares; tangents, triangulation, refinement; Gouraud rasterisation; [`MeshSink`]: where triangles go; [`CompactMesh`]: one quad for a shader; [`MeshCache`]: meshes to be kept |
+//! | `mesh.rs`, `mesh/` | [`ShadowMesh`]: strips; halved squares; tangents, triangulation, refinement, thinning; Gouraud rasterisation; [`MeshSink`]: where triangles go; [`CompactMesh`]: one quad for a shader; [`MeshCache`]: meshes to be kept |
 //! | `plan.rs`, `plan/` | [`plan::choose`]: the cheapest method within a tolerance |
 //! | `scene.rs`, `scene/` | [`Scene`], [`Surface`], [`Group`], and their JSON format |
 //! | `tolerance.rs` | [`Tolerance`]: how wrong a shadow may be |

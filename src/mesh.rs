@@ -3,9 +3,9 @@
 //! Rounded rectangles and circles are strips between rings, which need no triangulator. Outlines of small detail, such as
 //! icons, are [halved squares](halving), and so is whatever is to be there [quickly](MeshOptions::quick). For all other outlines,
 //! and where nothing of that was found, the tangent construction gives the skeleton: rings from the penumbra's outer edge to the
-//! umbra, at the distances that suit the profile best. Between them a constrained Delaunay triangulation (spade), inside the
-//! umbra a plain one (lyon); where the result is still wrong, as at corners and where there is no umbra, vertices are added until
-//! it is not.
+//! umbra, at the distances that suit the profile best. Between them and inside of the umbra a constrained Delaunay triangulation
+//! (spade); where the result is still wrong, as at corners and where there is no umbra, vertices are added until it is not, and then
+//! those are taken away that it does without. Shadows without a penumbra are filled by lyon.
 //!
 //! The tangent construction follows US 9,639,976; quick meshes, pixels ([`Shadow::fill_a8`]) and point queries do not use it.
 
@@ -18,6 +18,7 @@ mod field;
 mod gouraud;
 pub(crate) mod halving;
 mod lighten;
+mod measure;
 mod profile;
 mod refine;
 pub(crate) mod regions;
@@ -26,6 +27,7 @@ mod settle;
 mod sink;
 pub(crate) mod strips;
 pub(crate) mod tangents;
+mod thin;
 mod tilted;
 mod umbra;
 

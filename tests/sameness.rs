@@ -22,7 +22,7 @@ const GOLDEN: [(&str, u64); 11] = [
     ("points", 0xed85_f785_6936_3e8b),
     ("dithered paint", 0x60f8_2288_3fc0_c10d),
     ("masks", 0xfad7_7c0a_a8c7_f732),
-    ("meshes", 0xf3de_4d63_4738_fc4a),
+    ("meshes", 0xdce9_9501_2da0_092e),
     ("pictures", 0x59d3_8cc5_feba_a570),
     ("svg", 0x3023_e77b_7558_9b61),
 ];

@@ -8,15 +8,15 @@ use core::f64::consts::FRAC_2_PI;
 use std::collections::HashMap;
 
 use glam::DVec2;
-use spade::handles::{FixedUndirectedEdgeHandle, FixedVertexHandle};
+use spade::handles::{FixedUndirectedEdgeHandle, FixedVertexHandle, VertexHandle};
 use spade::{FloatTriangulation, Point2, Triangulation, mitigate_underflow};
 
 use super::field::Field;
+use super::measure::{Assessment, Measure};
 use super::profile::Profile;
 use super::regions::{Face, Region, Triangles, Vertex, faces};
-use super::samples::{Samples, Weights, mix, mix_densities};
 use super::settle::settle;
-use super::umbra::{self, LoopVertex};
+use super::thin::{Corner, Thinning, Triangle};
 use super::{MeshOptions, MeshVertex, Ring, ShadowMesh};
 
 /// Rounds of refinement at most. Each halves the larger triangles: the finest tolerance takes about 12; but the last vertices between a
@@ -34,46 +34,22 @@ const NEAREST: f64 = 5e-5;
 /// missed.
 const SAMPLED: f64 = 0.97;
 
-/// Into how many parts a triangle's sides are cut to find what is wrong, and to be sure of it.
-const COARSE: u32 = 4;
-const FINE: u32 = 8;
-
-/// How far samples are apart at most, in penumbra radii: long triangles run past corners that are shorter than a part.
-const SPACING: f64 = 0.2;
+/// How far away the frame about the shadow is, over the shadow's reach.
+const FRAME: f64 = 4.0;
 
 /// The part of the tolerance that is left to interpolation at least, however little rounding leaves: what is above the
 /// tolerance then is reported.
 const LEAST_SHARE: f64 = 0.25;
 
-/// From which part of the limit on the way from samples to the tops beside them is gone.
-const NEAR: f64 = 0.8;
-
-/// What sampling found out about a triangle.
-#[derive(Debug, Clone, Copy)]
-struct Assessment {
-    /// The largest difference from the profile's density, where a vertex would mend it.
-    error: f64,
-    /// Where that is.
-    worst: DVec2,
-    /// The largest difference from the exact density.
-    exact_error: f64,
-    /// Whether all of it was looked at, and not only some samples.
-    sure: bool,
-}
-
 pub(super) struct Refinement {
-    field: Field,
+    measure: Measure,
     options: MeshOptions,
     triangles: Triangles,
     /// Whether a part of a ring could not be built: what lies on which side of it is not known then.
     broken: bool,
     /// For each ring, by how much its vertices differ from the density where they are, to balance errors.
     offsets: Vec<f64>,
-    umbra: Vec<Vec<FixedVertexHandle>>,
     assessed: HashMap<[usize; 3], Assessment>,
-    samples: Samples,
-    /// Where they are.
-    points: Vec<DVec2>,
 }
 
 impl Refinement {
@@ -83,15 +59,12 @@ impl Refinement {
             _ => 0.0,
         };
         let mut refinement = Self {
-            field,
+            measure: Measure::new(field, options.profile),
             options,
             triangles: Triangles::new(),
             broken: false,
             offsets: rings.iter().map(offset).collect(),
-            umbra: Vec::new(),
             assessed: HashMap::new(),
-            samples: Samples::default(),
-            points: Vec::new(),
         };
         for (index, (_, loops)) in rings.iter().enumerate() {
             for points in loops {
@@ -102,9 +75,6 @@ impl Refinement {
                 for (&from, &to) in handles.iter().zip(handles.iter().cycle().skip(1)) {
                     refinement.constrain(from, to);
                 }
-                if index + 1 == refinement.offsets.len() {
-                    refinement.umbra.push(handles);
-                }
             }
         }
         refinement
@@ -114,7 +84,7 @@ impl Refinement {
     /// `unsure` (density).
     pub(super) fn run(mut self, center: DVec2, rounding: f64, unsure: f64) -> ShadowMesh {
         // Density changes by at most 2 / π over the radius.
-        let noise = unsure + rounding * FRAC_2_PI / self.field.radius();
+        let noise = unsure + rounding * FRAC_2_PI / self.measure.radius();
         let tolerance = self.options.tolerance.as_levels() / 255.0;
         let limit = SAMPLED * (tolerance - noise).max(LEAST_SHARE * tolerance);
         for _ in 0..ROUNDS {
@@ -135,7 +105,7 @@ impl Refinement {
                 break;
             }
         }
-        self.finish(center, limit, noise)
+        self.finish(center, limit, noise, rounding)
     }
 
     /// The faces that are wrong by more than `limit` where a vertex would mend it, as far as sampled or surely.
@@ -150,20 +120,14 @@ impl Refinement {
         wrong
     }
 
-    /// The density that a vertex or sample at `point` should have.
-    fn target(&mut self, point: DVec2) -> (f64, f64) {
-        let exact = self.field.at(point);
-        (exact, self.options.profile.in_place_of(exact))
-    }
-
     fn insert(&mut self, point: DVec2, ring: Option<usize>) -> Option<FixedVertexHandle> {
         let last = self.offsets.len() - 1;
         let density = match ring {
             Some(0) => 0.0,
-            Some(ring) if ring == last => self.options.profile.in_place_of(1.0),
+            Some(ring) if ring == last => self.measure.umbra(),
             _ => {
                 let offset = ring.map_or(0.0, |ring| self.offsets[ring]);
-                (self.target(point).1 + offset).clamp(0.0, 1.0)
+                (self.measure.target(point) + offset).clamp(0.0, 1.0)
             }
         };
         let position = mitigate_underflow(Point2::new(point.x, point.y));
@@ -210,46 +174,14 @@ impl Refinement {
                 && (data[a].ring == Some(0) || data[a].ring == Some(last))
                 && self.triangles.exists_constraint(corners[a], corners[b])
         });
-        let (field, profile) = (&mut self.field, self.options.profile);
-        let radius = field.radius();
-        let mut result = Assessment {
-            error: 0.0,
-            worst: at[0],
-            exact_error: 0.0,
-            sure: surely,
-        };
-        let points = &mut self.points;
-        let look = |samples: &[Weights], errors: &mut [f64]| {
-            points.clear();
-            points.extend(samples.iter().map(|&weights| mix(at, weights)));
-            field.at_all(points, errors);
-            for (weights, error) in samples.iter().zip(errors) {
-                let density = mix_densities(densities, *weights);
-                let exact = *error;
-                result.exact_error = result.exact_error.max((density - exact).abs());
-                // Where a vertex would mend nothing there is no error to be mended.
-                let mendable = (0..3).all(|i| !fixed[i] || weights[i] > 0.0);
-                *error = if mendable {
-                    density - profile.in_place_of(exact)
-                } else {
-                    0.0
-                };
-            }
-        };
-        let (parts, near) = if surely {
-            (FINE, NEAR * limit)
-        } else {
-            (COARSE, f64::INFINITY)
-        };
-        let top = self.samples.worst(at, parts, SPACING * radius, near, look);
-        (result.error, result.worst) = (top.0, mix(at, top.1));
+        let result = self.measure.assess(at, densities, fixed, surely, limit);
         self.assessed.insert(key, result);
         (key, result)
     }
 
     /// Adds a vertex at a triangle's worst point, unless vertices added since have mended it.
     fn mend(&mut self, key: [usize; 3], limit: f64) {
-        let [beside, nearest] = [BESIDE, NEAREST].map(|share| share * self.field.radius());
+        let [beside, nearest] = [BESIDE, NEAREST].map(|share| share * self.measure.radius());
         let Some(&assessment) = self.assessed.get(&key) else {
             return;
         };
@@ -349,67 +281,89 @@ impl Refinement {
             }
             _ => return 0.0,
         };
-        (density - self.target(point).1).abs()
+        (density - self.measure.target(point)).abs()
     }
 
-    fn finish(mut self, center: DVec2, limit: f64, noise: f64) -> ShadowMesh {
+    fn finish(mut self, center: DVec2, limit: f64, noise: f64, rounding: f64) -> ShadowMesh {
         let mut mesh = ShadowMesh::empty();
-        let mut error: f64 = 0.0;
-        let faces = self.faces(Region::Penumbra);
-        for &face in &faces {
-            let (_, assessment) = self.assess(face, true, limit);
-            error = error.max(assessment.exact_error);
-            mesh.complete &= assessment.error <= limit;
+        let (corners, triangles) = self.all(limit);
+        let mut thinning = Thinning::new(&mut self.measure, limit, rounding, corners, triangles);
+        if !self.broken && !self.options.quick {
+            thinning.run();
         }
         // In `f32` vertices of small penumbrae may come to lie on one another: they become one, and triangles between them
         // nothing.
         let mut merged: HashMap<[u32; 2], u32> = HashMap::new();
-        let mut own = Vec::with_capacity(self.triangles.num_vertices());
-        for vertex in self.triangles.vertices() {
-            let at = vertex.position();
-            let position = (DVec2::new(at.x, at.y) + center).as_vec2().to_array();
-            let next = mesh.vertices.len() as u32;
-            let index = *merged.entry(position.map(f32::to_bits)).or_insert(next);
-            if index == next {
+        let mut own = |corner: &Corner| {
+            let position = (corner.at + center).as_vec2().to_array();
+            *merged.entry(position.map(f32::to_bits)).or_insert_with(|| {
                 mesh.vertices.push(MeshVertex {
                     position,
-                    density: vertex.data().density as f32,
+                    density: corner.density as f32,
                 });
-            }
-            own.push(index);
-        }
-        let corners = |face: &Face| {
-            let vertices = self.triangles.face(*face).vertices();
-            vertices.map(|vertex| own[vertex.fix().index()])
-        };
-        let mut triangles: Vec<[u32; 3]> = faces.iter().map(corners).collect();
-        let loops: Vec<Vec<LoopVertex>> = self
-            .umbra
-            .iter()
-            .map(|handles| {
-                handles
-                    .iter()
-                    .map(|&handle| {
-                        let position = self.triangles.vertex(handle).position();
-                        LoopVertex {
-                            position: DVec2::new(position.x, position.y),
-                            index: own[handle.index()],
-                        }
-                    })
-                    .collect()
+                mesh.vertices.len() as u32 - 1
             })
-            .collect();
-        let umbra = self.options.profile.in_place_of(1.0);
-        error = error.max(if loops.is_empty() { 0.0 } else { 1.0 - umbra });
+        };
+        let mut error = thinning.cut;
+        let mut triangles = Vec::new();
+        for triangle in thinning.triangles() {
+            error = error.max(triangle.exact_error);
+            mesh.complete &= triangle.error <= limit;
+            if triangle.region != Region::Outside {
+                triangles.push(
+                    triangle
+                        .corners
+                        .map(|corner| own(&thinning.corners[corner])),
+                );
+            }
+        }
         error = error / SAMPLED + noise;
         mesh.error_levels = if self.broken { 255.0 } else { error * 255.0 };
         let kept = mesh.error_levels <= self.options.tolerance.as_levels();
         mesh.complete &= !self.broken && (kept || self.options.profile != Profile::Disc);
-        match umbra::fill(&loops, |_| None) {
-            Some(filled) => triangles.extend(filled),
-            None => triangles.extend(self.faces(Region::Umbra).iter().map(corners)),
-        }
         mesh.indices = settle(&mesh.vertices, triangles);
         mesh
+    }
+
+    /// The triangles of the whole plane about the shadow, within a frame.
+    fn all(&mut self, limit: f64) -> (Vec<Corner>, Vec<Triangle>) {
+        let reach = self.triangles.vertices().map(|vertex| {
+            let at = vertex.position();
+            at.x.abs().max(at.y.abs())
+        });
+        let far = FRAME * reach.fold(self.measure.radius(), f64::max);
+        for [x, y] in [[-far, -far], [far, -far], [far, far], [-far, far]] {
+            self.insert(DVec2::new(x, y), Some(0));
+        }
+        let corner = |vertex: VertexHandle<'_, _, _, _, _>| {
+            let Vertex {
+                position, density, ..
+            } = *vertex.data();
+            Corner::new(DVec2::new(position.x, position.y), density)
+        };
+        let corners = self.triangles.vertices().map(corner).collect();
+        let umbra = 1.0 - self.measure.umbra();
+        let mut all = Vec::new();
+        for region in [Region::Penumbra, Region::Umbra, Region::Outside] {
+            for face in self.faces(region) {
+                let vertices = self.triangles.face(face).vertices();
+                let corners = vertices.map(|vertex| vertex.fix().index());
+                let (error, exact_error) = match region {
+                    Region::Penumbra => {
+                        let (_, assessment) = self.assess(face, true, limit);
+                        (assessment.error, assessment.exact_error)
+                    }
+                    Region::Umbra => (0.0, umbra),
+                    Region::Outside => (0.0, 0.0),
+                };
+                all.push(Triangle {
+                    corners,
+                    region,
+                    error,
+                    exact_error,
+                });
+            }
+        }
+        (corners, all)
     }
 }

@@ -1,4 +1,4 @@
-//! The umbra: large, flat, and filled by lyon.
+//! A shadow that is all umbra: flat, and filled by lyon.
 
 use std::collections::HashMap;
 
@@ -14,16 +14,16 @@ use super::{MeshVertex, ShadowMesh};
 
 /// A vertex of a loop: where it is and its index in the mesh.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct LoopVertex {
-    pub(super) position: DVec2,
-    pub(super) index: u32,
+struct LoopVertex {
+    position: DVec2,
+    index: u32,
 }
 
 /// Triangles that fill the loops, by their vertices' own indices. lyon works in `f32`: for a vertex that it finds where
-/// lines of the loops cross in that precision `extra` gives an index. Without one, or should lyon fail, there are none.
-pub(super) fn fill(
+/// lines of the loops cross in that precision `extra` gives an index. Should lyon fail, there are none.
+fn fill(
     loops: &[Vec<LoopVertex>],
-    mut extra: impl FnMut([f32; 2]) -> Option<u32>,
+    mut extra: impl FnMut([f32; 2]) -> u32,
 ) -> Option<Vec<[u32; 3]>> {
     let mut builder = Path::builder();
     let mut own: HashMap<EndpointId, u32> = HashMap::new();
@@ -50,12 +50,11 @@ pub(super) fn fill(
     FillTessellator::new()
         .tessellate_with_ids(path.id_iter(), &path, None, &options, &mut output)
         .ok()?;
-    let found: Option<Vec<u32>> = buffers
+    let found: Vec<u32> = buffers
         .vertices
         .iter()
-        .map(|&(found, position)| found.or_else(|| extra(position)))
+        .map(|&(found, position)| found.unwrap_or_else(|| extra(position)))
         .collect();
-    let found = found?;
     // All of lyon's triangles turn the same way: together they tell which, where one without area cannot.
     let triangles = buffers.indices.chunks_exact(3);
     let turn = |corners: &[u32]| {
@@ -94,9 +93,7 @@ pub(super) fn mesh(loops: &[Vec<DVec2>], center: DVec2) -> ShadowMesh {
             points.iter().map(vertex).collect()
         })
         .collect();
-    match fill(&loops, |position| {
-        Some(add(DVec2::from(position.map(f64::from))))
-    }) {
+    match fill(&loops, |position| add(DVec2::from(position.map(f64::from)))) {
         Some(triangles) => mesh.indices = settle(&mesh.vertices, triangles),
         None => {
             // The loops are finite and few enough, so lyon has no reason; but a mesh without its umbra must say so.

@@ -170,9 +170,10 @@ impl Nodes {
             weight.store_slice(&mut row.weights[place.clone()]);
             width.store_slice(&mut row.widths[place.clone()]);
             let below = sine * reach;
-            for side in 0..=row.places[1] {
+            let sides = row.offsets.iter_mut().zip(corners);
+            for (offsets, corners) in sides.take(1 + row.places[1]) {
                 let mut offset = width * 0.5 + half_side;
-                for ((corner, rise), sign) in corners[side].into_iter().zip([-1.0, 1.0]) {
+                for ((corner, rise), sign) in corners.into_iter().zip([-1.0, 1.0]) {
                     if rise + reach <= 0.0 || corner == 0.0 {
                         continue;
                     }
@@ -180,7 +181,7 @@ impl Nodes {
                     let level = ((splat(corner) - rise) * (rise + corner)).sqrt();
                     offset += level - corner;
                 }
-                offset.store_slice(&mut row.offsets[side][place.clone()]);
+                offset.store_slice(&mut offsets[place.clone()]);
             }
         }
         let scale = if between > 0.0 {
