@@ -29,8 +29,8 @@ pub struct Shadow {
     radius: f64,
     /// The loops of the shapes made of lines and circular arcs.
     fixed: Outline,
-    /// Loops among them that several shapes make together, and the boxes of these shapes.
-    united: Vec<(Range<usize>, Vec<(DVec2, DVec2)>)>,
+    /// Those that several shapes make together.
+    united: Vec<United>,
     /// The shapes that need flattening, projected; those that may overlap together.
     curved: Vec<Vec<Shape>>,
     /// A box that holds its outline.
@@ -43,6 +43,13 @@ pub struct Shadow {
     rounded: Option<Rounded>,
     /// Shadows of one radius that are this one together and do not meet; none if it is a single one.
     parts: Vec<Shadow>,
+}
+
+/// Which loops several shapes make together, and the boxes of these shapes.
+#[derive(Debug, Clone)]
+struct United {
+    loops: Range<usize>,
+    boxes: Vec<(DVec2, DVec2)>,
 }
 
 /// What parts of a shadow are made of.
@@ -124,8 +131,10 @@ impl Shadow {
                 Some(outlines) if group.iter().all(Shape::is_straight) => {
                     let first = shadow.fixed.loops.len();
                     shadow.fixed.append(unite(&outlines, 1.0));
-                    let boxes = group.iter().filter_map(Shape::hull).collect();
-                    shadow.united.push((first..shadow.fixed.loops.len(), boxes));
+                    shadow.united.push(United {
+                        loops: first..shadow.fixed.loops.len(),
+                        boxes: group.iter().filter_map(Shape::hull).collect(),
+                    });
                 }
                 _ => shadow.curved.push(group),
             }
@@ -168,7 +177,7 @@ impl Shadow {
             pieces.push(piece);
         };
         let mut next = 0;
-        for (loops, boxes) in &self.united {
+        for United { loops, boxes } in &self.united {
             self.add_loops(next..loops.start, &mut add);
             add(
                 boxes,
@@ -265,11 +274,14 @@ impl Shadow {
     pub(crate) fn moved(&self, offset: DVec2) -> Self {
         let affine = DAffine2::from_translation(offset);
         let moved = |group: &Vec<Shape>| group.iter().map(|shape| shape.mapped(&affine)).collect();
-        let united = |(loops, boxes): &(Range<usize>, Vec<(DVec2, DVec2)>)| {
+        let united = |United { loops, boxes }: &United| {
             let boxes = boxes
                 .iter()
                 .map(|(min, max)| (*min + offset, *max + offset));
-            (loops.clone(), boxes.collect())
+            United {
+                loops: loops.clone(),
+                boxes: boxes.collect(),
+            }
         };
         let mut shadow = Self {
             radius: self.radius,
