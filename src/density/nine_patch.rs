@@ -270,7 +270,9 @@ impl NinePatchScratch {
         let before = blocks.start..done.start;
         let behind = done.end..blocks.end;
         for missing in [before, behind] {
-            reach.compute_all(simd, missing, &mut zone.rows[slot]);
+            if !missing.is_empty() {
+                reach.compute_all(simd, missing, &mut zone.rows[slot]);
+            }
         }
         *done = done.start.min(blocks.start)..done.end.max(blocks.end);
         slot

@@ -96,15 +96,21 @@ impl Nodes {
     }
 
     /// Prepares the row of discs at a y.
-    #[inline(always)]
+    // One copy a SIMD level: where it was inlined, compilers took minutes.
+    #[inline(never)]
     pub(super) fn place<S: Simd>(&mut self, simd: S, shape: &Rounded, y: f64) {
         if self.row.y == Some(y) {
             return;
         }
         (self.row.y, self.row.between) = (Some(y), 0.0);
-        for band in 0..self.kernel.count() {
-            self.place_band(simd, shape, y + self.kernel.middle(band), band);
-        }
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                for band in 0..self.kernel.count() {
+                    self.place_band(simd, shape, y + self.kernel.middle(band), band);
+                }
+            },
+        );
     }
 
     #[inline(always)]

@@ -24,13 +24,22 @@ pub(super) struct Reach<'a> {
 
 impl Reach<'_> {
     /// Computes blocks of columns.
-    #[inline(always)]
+    // One copy a SIMD level: where it was inlined, compilers took minutes.
+    #[inline(never)]
     pub(super) fn compute_all<S: Simd>(
         &self,
         simd: S,
         blocks: Range<usize>,
         densities: &mut [f32],
     ) {
+        simd.vectorize(
+            #[inline(always)]
+            || self.compute_blocks(simd, blocks, densities),
+        );
+    }
+
+    #[inline(always)]
+    fn compute_blocks<S: Simd>(&self, simd: S, blocks: Range<usize>, densities: &mut [f32]) {
         let mut block = blocks.start;
         while block < blocks.end {
             let at = block * BLOCK;
