@@ -28,6 +28,12 @@ pub(crate) fn overlapping<T>(mut boxed: Vec<(DVec2, DVec2, T)>) -> Vec<Vec<T>> {
     groups
 }
 
+/// The smallest box that holds some boxes, or none for none.
+pub(crate) fn around(boxes: impl IntoIterator<Item = (DVec2, DVec2)>) -> Option<(DVec2, DVec2)> {
+    let boxes = boxes.into_iter();
+    boxes.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+}
+
 /// The first box of a group.
 fn first(leaders: &mut [usize], mut index: usize) -> usize {
     while leaders[index] != index {

@@ -24,6 +24,7 @@ use core::f64::consts::FRAC_PI_2;
 use core::ops::Range;
 
 use fearless_simd::dispatch;
+use glam::DVec2;
 
 use self::frame::Frame;
 use crate::grid::Grid;
@@ -183,14 +184,25 @@ pub(crate) fn flatness(levels: f64, radius: f64, pixel: f64) -> f64 {
 
 /// The average of `density` over the square about a pixel's centre on which it depends at that penumbra radius, in pixels.
 #[cfg(feature = "lab")]
-pub(crate) fn square_average(radius: f64, density: impl Fn(glam::DVec2) -> f64) -> f64 {
+pub(crate) fn square_average(radius: f64, density: impl Fn(DVec2) -> f64) -> f64 {
     let side = averaged_side(radius);
     if side == 0.0 {
-        return density(glam::DVec2::ZERO);
+        return density(DVec2::ZERO);
     }
     quadrature::square(radius)
         .map(|(offset, weight)| weight * density(offset * side))
         .sum()
+}
+
+/// How far from its centre a pixel's density depends on what is there, in pixels, for a penumbra radius in pixels.
+pub(crate) fn reach(radius: f64) -> f64 {
+    radius + averaged_side(radius) / 2.0
+}
+
+/// The box of the pixels that see a shadow whose outline is within a box, in pixels of which there are `per_unit` a scene unit.
+pub(crate) fn reached((min, max): (DVec2, DVec2), radius: f64, per_unit: f64) -> (DVec2, DVec2) {
+    let reach = reach(radius * per_unit);
+    (min * per_unit - reach, max * per_unit + reach)
 }
 
 /// The side of the square about its centre over which a pixel's density is averaged, in pixels, for a penumbra radius

@@ -8,7 +8,7 @@ use core::str::FromStr;
 
 use crate::density::frame::Frame;
 use crate::density::{
-    CURVES, EXACT_SHARE, PixelOptions, averaged_side, direct, exact, grid, nine_patch,
+    CURVES, EXACT_SHARE, PixelOptions, averaged_side, direct, exact, grid, nine_patch, reach,
 };
 use crate::grid::Grid;
 use crate::shadow::Shadow;
@@ -175,7 +175,7 @@ impl Work {
         let census = shadow.census();
         let radius = shadow.radius() * per_unit;
         // A pixel sees a little beyond its disc.
-        let reach = radius + averaged_side(radius) / 2.0;
+        let reach = reach(radius);
         let met = |count: f64, length: f64| {
             2.0 * reach * length * per_unit + count * core::f64::consts::PI * reach * reach
         };
@@ -292,7 +292,7 @@ pub fn skip(
         return Some(Skip::Empty);
     };
     let radius = shadow.radius() * grid.pixels_per_unit();
-    let frame = Frame::new(hull, radius + averaged_side(radius) / 2.0, grid);
+    let frame = Frame::new(hull, reach(radius), grid);
     let [columns, rows] = frame.pixels();
     if columns.is_empty() || rows.is_empty() {
         return Some(Skip::OffGrid);

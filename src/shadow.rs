@@ -10,9 +10,9 @@ use std::sync::OnceLock;
 
 use glam::{DAffine2, DVec2};
 
-use crate::apart::overlapping;
+use crate::apart::{around, overlapping};
 use crate::density::rounded::Rounded;
-use crate::density::{self, PixelOptions, averaged_side};
+use crate::density::{self, PixelOptions};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::light::Projection;
@@ -230,7 +230,7 @@ impl Shadow {
     fn measure(&mut self) {
         let curved = self.curved.iter().flatten().filter_map(Shape::hull);
         let hulls = self.fixed.bounds().into_iter().chain(curved);
-        self.hull = hulls.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+        self.hull = around(hulls);
         self.rounded = if self.curved.is_empty() {
             Rounded::of(&self.fixed)
         } else {
@@ -317,10 +317,8 @@ impl Shadow {
 
     /// The box of the pixels that see it, in pixels of which there are so many a scene unit.
     pub(crate) fn reach(&self, per_unit: f64) -> Option<(DVec2, DVec2)> {
-        let radius = self.radius * per_unit;
-        let reach = radius + averaged_side(radius) / 2.0;
-        let (min, max) = self.hull?;
-        Some((min * per_unit - reach, max * per_unit + reach))
+        let hull = self.hull?;
+        Some(density::reached(hull, self.radius, per_unit))
     }
 
     /// The penumbra radius r, in scene units: how far from the outline the penumbra reaches, both ways.

@@ -8,6 +8,7 @@ use core::ops::Range;
 use fearless_simd::Level;
 use glam::{DVec2, DVec3};
 
+use crate::apart::around;
 use crate::density::{PixelOptions, tilted};
 use crate::error::{MAX_COORDINATE, Result};
 use crate::grid::Grid;
@@ -123,7 +124,7 @@ impl TiltedShadow {
                 (center + radius).clamp(-far, far),
             )
         });
-        boxes.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+        around(boxes)
     }
 
     /// The density at a point (x, y) of the receiver, 0 to 1, in closed form; curves of the caster are taken as lines within

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use crate::density::alpha::AlphaShadow;
-use crate::density::{self, PixelOptions, Sink, averaged_side, tilted};
+use crate::density::{self, PixelOptions, Sink, reached, tilted};
 use crate::grid::Grid;
 use crate::scratch::Scratch;
 use crate::shadow::Shadow;
@@ -51,20 +51,11 @@ impl AnyShadow {
 
     /// The box of the pixels that see the shadow, in pixels of which there are so many a scene unit.
     pub(crate) fn reach(&self, per_unit: f64) -> Option<(DVec2, DVec2)> {
-        let (min, max, radius) = match self {
-            Self::Level(shadow) => return shadow.reach(per_unit),
+        match self {
+            Self::Level(shadow) => shadow.reach(per_unit),
             // Its circles are within the box already.
-            Self::Tilted(shadow) => {
-                let (min, max) = shadow.hull()?;
-                (min, max, 0.0)
-            }
-            Self::Alpha(shadow) => {
-                let (min, max) = shadow.hull();
-                (min, max, shadow.radius())
-            }
-        };
-        let radius = radius * per_unit;
-        let reach = radius + averaged_side(radius) / 2.0;
-        Some((min * per_unit - reach, max * per_unit + reach))
+            Self::Tilted(shadow) => shadow.hull().map(|hull| reached(hull, 0.0, per_unit)),
+            Self::Alpha(shadow) => Some(reached(shadow.hull(), shadow.radius(), per_unit)),
+        }
     }
 }

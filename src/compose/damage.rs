@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::Source;
-use crate::apart::overlapping;
+use crate::apart::{around, overlapping};
 use crate::error::Result;
 use crate::scene::{Scene, Surface};
 use crate::shadow::Bounds;
@@ -87,10 +87,6 @@ fn disjoint(mut boxes: Vec<(DVec2, DVec2)>) -> Vec<(DVec2, DVec2)> {
     loop {
         let count = boxes.len();
         let boxed = boxes.into_iter().map(|(min, max)| (min, max, (min, max)));
-        let around = |group: Vec<(DVec2, DVec2)>| {
-            let boxes = group.into_iter();
-            boxes.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
-        };
         let groups = overlapping(boxed.collect()).into_iter();
         boxes = groups.filter_map(around).collect();
         // Boxes around groups may overlap anew.

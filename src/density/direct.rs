@@ -8,7 +8,7 @@ use fearless_simd::Simd;
 use super::frame::Frame;
 use super::rows::Lattice;
 use super::sampling::Sampling;
-use super::{PixelOptions, Sink, averaged_side, seen_columns};
+use super::{PixelOptions, Sink, reach, seen_columns};
 use crate::grid::Grid;
 use crate::outline::{self, Edge};
 use crate::scratch::Scratch;
@@ -29,7 +29,7 @@ pub(crate) fn fill<S: Simd>(
     let sampling = Sampling::new(radius);
     let (unit, points) = (sampling.unit, sampling.points());
     let bounds = outline::bounds(edges.iter());
-    let reach = radius + averaged_side(radius) / 2.0;
+    let reach = reach(radius);
     let Some(frame) = bounds.map(|bounds| Frame::new(bounds, reach, grid)) else {
         return;
     };

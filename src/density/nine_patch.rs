@@ -22,7 +22,7 @@ use self::nodes::Nodes;
 use self::reach::{BLOCK, Reach};
 use super::frame::Frame;
 use super::rounded::Rounded;
-use super::{PixelOptions, Sink, averaged_side, cubic, seen_columns};
+use super::{PixelOptions, Sink, averaged_side, cubic, reach, seen_columns};
 use crate::grid::Grid;
 use crate::scratch::Scratch;
 use crate::shadow::Shadow;
@@ -98,8 +98,7 @@ pub(crate) fn fill<S: Simd>(
     scratch: &mut Scratch,
     sink: &mut dyn Sink,
 ) {
-    let reach = radius + averaged_side(radius) / 2.0;
-    let frame = Frame::new((rounded.min, rounded.max), reach, grid);
+    let frame = Frame::new((rounded.min, rounded.max), reach(radius), grid);
     // Column and row numbers are the coordinates of their pixels' centres.
     let shape = Rounded {
         min: frame.place(rounded.min) - frame.phase - 0.5,

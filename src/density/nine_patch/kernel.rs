@@ -6,8 +6,9 @@
 
 use core::f64::consts::PI;
 
-use crate::density::averaged_side;
+use crate::density::lanes::LANES;
 use crate::density::rows::Window;
+use crate::density::{averaged_side, reach};
 
 /// The disc, or the disc all over the bands of a pixel's square; all in pixels.
 #[derive(Debug, Default)]
@@ -96,7 +97,7 @@ impl Kernel {
     /// How much of what a pixel averages over lies between two heights, in pixels.
     #[inline(always)]
     pub(super) fn between(&self, ends: [f64; 2]) -> f32 {
-        let reach = self.radius + self.side / 2.0;
+        let reach = reach(self.radius);
         if ends[0] <= -reach && ends[1] >= reach {
             return 1.0;
         }
@@ -114,18 +115,20 @@ impl Kernel {
         ((below - above) / (PI * self.radius * self.radius * half)) as f32
     }
 
-    /// The chord at a height over the reach, and how much of the average lies on a pixel of it.
-    #[inline(always)]
-    pub(super) fn chord(&self, height: f32) -> [f32; 2] {
-        let (slice, next, share) = self.slice(height);
-        [
-            slice.width + (next.width - slice.width) * share,
-            slice.weight + (next.weight - slice.weight) * share,
-        ]
+    /// The chords at heights over the reach, and how much of the average lies on a pixel of each.
+    // Once: where it was inlined, compilers took minutes.
+    #[inline(never)]
+    pub(super) fn chords(&self, heights: &[f32; LANES]) -> [[f32; LANES]; 2] {
+        let (mut widths, mut weights) = ([0.0; LANES], [0.0; LANES]);
+        for (lane, height) in heights.iter().enumerate() {
+            let (slice, next, share) = self.slice(*height);
+            widths[lane] = slice.width + (next.width - slice.width) * share;
+            weights[lane] = slice.weight + (next.weight - slice.weight) * share;
+        }
+        [widths, weights]
     }
 
     /// The slices about a height over the reach, and how far from the first to the second it is.
-    #[inline(always)]
     fn slice(&self, height: f32) -> (Slice, Slice, f32) {
         let place = height.abs().min(1.0) * INTERVALS as f32;
         let slice = place as usize;

@@ -4,7 +4,7 @@ use core::ops::Range;
 
 use super::columns::Columns;
 use crate::density::rounded::Rounded;
-use crate::density::{averaged_side, cubic};
+use crate::density::{cubic, reach};
 
 /// Where rows of densities are computed.
 #[derive(Debug, Clone, Copy)]
@@ -41,7 +41,7 @@ impl Lattice {
             };
         // Otherwise a row for each row of pixels.
         let pitch = if is_apart { between } else { 1.0 };
-        let reach = radius + averaged_side(radius) / 2.0;
+        let reach = reach(radius);
         let middle = shape.min.y.midpoint(shape.max.y);
         let half = ((middle - shape.min.y + reach) / pitch).ceil() + 1.0;
         let (start, mirror) = match (is_apart, is_mirrored) {

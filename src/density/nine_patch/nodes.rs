@@ -164,11 +164,9 @@ impl Nodes {
             let share = gain * cosine * f32x16::from_slice(simd, shares);
             let (mut width, mut weight) = (cosine * (2.0 * reach), share);
             if is_averaged {
-                let (mut heights, mut widths, mut met) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+                let mut heights = [0.0; LANES];
                 sine.store_slice(&mut heights);
-                for lane in 0..LANES {
-                    [widths[lane], met[lane]] = kernel.chord(heights[lane]);
-                }
+                let [widths, met] = kernel.chords(&heights);
                 width = f32x16::from_slice(simd, &widths);
                 weight = share * f32x16::from_slice(simd, &met);
             }
