@@ -176,12 +176,12 @@ impl Hidden {
             .is_sorted_by(|a, b| (a.row, a.end) < (b.row, b.start))
         {
             let mut at = 0;
-            self.rows.clear();
-            for row in 0..=height {
-                while self.spans.get(at).is_some_and(|span| span.row < row) {
+            self.rows.resize(height as usize + 1, 0);
+            for (row, start) in self.rows.iter_mut().enumerate() {
+                while self.spans.get(at).is_some_and(|span| (span.row as usize) < row) {
                     at += 1;
                 }
-                self.rows.push(at as u32);
+                *start = at as u32;
             }
             return;
         }

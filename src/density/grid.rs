@@ -572,7 +572,6 @@ impl Weaver<'_> {
         let rows = [-1, 0, 1, 2].map(|offset| &ring[(row + offset).rem_euclid(RING) as usize]);
         let mut runs = [0; 4];
         let mut at = columns.start;
-        let (zero, one) = (f32x16::splat(simd, 0.0), f32x16::splat(simd, 1.0));
         while at < columns.end {
             let mut end = columns.end;
             let (mut constant, mut alike) = (Some(0.0), true);
@@ -603,17 +602,14 @@ impl Weaver<'_> {
                     let start = (at - self.first) as usize;
                     let before = start % BLOCK;
                     values.resize((before + count).next_multiple_of(BLOCK), 0.0);
-                    let blocks = values.as_chunks_mut::<BLOCK>().0;
-                    for (offset, values) in (start - before..).step_by(BLOCK).zip(blocks) {
-                        let part = offset..offset + BLOCK;
-                        let a = f32x16::from_slice(simd, &rows[0].densities[part.clone()]);
-                        let b = f32x16::from_slice(simd, &rows[1].densities[part.clone()]);
-                        let c = f32x16::from_slice(simd, &rows[2].densities[part.clone()]);
-                        let d = f32x16::from_slice(simd, &rows[3].densities[part]);
-                        let sum =
-                            a * weights[0] + b * weights[1] + (c * weights[2] + d * weights[3]);
-                        sum.max(zero).min(one).store_slice(values);
-                    }
+                    let part = start - before..start - before + values.len();
+                    let [a, b, c, d] = [
+                        &rows[0].densities[part.clone()],
+                        &rows[1].densities[part.clone()],
+                        &rows[2].densities[part.clone()],
+                        &rows[3].densities[part],
+                    ];
+                    cubic::between(simd, [a, b, c, d], weights, values);
                     let columns = first..first + count as u32;
                     sink.values(number, columns, &values[before..]);
                 }

@@ -15,9 +15,9 @@ mod reach;
 
 use core::ops::Range;
 
-use fearless_simd::{Simd, SimdBase, f32x16};
+use fearless_simd::Simd;
 
-use self::lattice::Lattice;
+use self::lattice::{Cell, Lattice};
 use self::nodes::Nodes;
 use self::reach::{BLOCK, Reach};
 use super::frame::Frame;
@@ -77,6 +77,9 @@ struct Zone {
     which: [i64; RING],
     /// The blocks of them that were computed.
     done: [Range<usize>; RING],
+    /// The cell that pixels were last asked for in, and the blocks for which all of its rows are there.
+    cell: [i64; RING],
+    ready: Range<usize>,
     /// The pixels' densities where rows are apart.
     values: Vec<f32>,
 }
@@ -86,6 +89,11 @@ const RING: usize = 4;
 
 /// The number of no row.
 const NONE: i64 = i64::MIN;
+
+/// Where a row is kept.
+fn slot(row: i64) -> usize {
+    row.rem_euclid(RING as i64) as usize
+}
 
 /// Gives `sink` the density of every pixel of the grid that is in the shadow of a rounded rectangle and not hidden.
 #[inline(always)]
@@ -105,7 +113,7 @@ pub(crate) fn fill<S: Simd>(
         max: frame.place(rounded.max) - frame.phase - 0.5,
         radii: rounded.radii.map(|r| r * frame.scale),
     };
-    let [columns, mut lines] = frame.pixels();
+    let [columns, lines] = frame.pixels();
     if columns.is_empty() {
         return;
     }
@@ -120,30 +128,27 @@ pub(crate) fn fill<S: Simd>(
         0..0
     };
     let origin = frame.first[0];
-    while let Some(line) = lattice.next(&mut lines) {
-        let y = line as f64;
-        let between = kept
-            .nodes
-            .kernel
-            .between([shape.min.y - y, shape.max.y - y]);
-        if between <= 0.0 {
-            continue;
-        }
+    let column = |x: i64| (x - origin) as u32;
+    for (line, place) in lattice.lines(lines) {
         let number = (line - frame.first[1]) as u32;
         seen_columns(options.hidden, number, &frame, &columns, wanted);
-        let place = lattice.row_at(y);
+        let cell = lattice.cell(place);
         for wanted in wanted.iter() {
-            let column = |x: i64| (x - origin) as u32;
             let (start, end) = (wanted.start.max(middle.start), wanted.end.min(middle.end));
             if start < end {
-                sink.constant(number, column(start)..column(end), between);
+                let y = line as f64;
+                let ends = [shape.min.y - y, shape.max.y - y];
+                let between = kept.nodes.kernel.between(ends);
+                if between > 0.0 {
+                    sink.constant(number, column(start)..column(end), between);
+                }
             }
             for zone in 0..zones {
                 let (first, last) = (kept.zones[zone].start, kept.zones[zone].end);
                 let (start, end) = (wanted.start.max(first), wanted.end.min(last));
                 if start < end {
                     let part = (start - first) as usize..(end - first) as usize;
-                    let densities = kept.row(simd, zone, place, &lattice, part);
+                    let densities = kept.row(simd, zone, &cell, &lattice, part);
                     sink.values(number, column(start)..column(end), densities);
                 }
             }
@@ -170,7 +175,7 @@ impl NinePatchScratch {
             zone.end = range.1.floor() as i64 + 1;
             zone.met = [!apart || index == 0, !apart || index == 1];
             zone.sides = [shape.min.x, shape.max.x].map(|x| (x - zone.start as f64) as f32);
-            zone.which = [NONE; RING];
+            (zone.which, zone.cell) = ([NONE; RING], [NONE; RING]);
             let width = ((zone.end - zone.start) as usize).next_multiple_of(2 * BLOCK);
             for row in &mut zone.rows {
                 row.resize(width, 0.0);
@@ -184,53 +189,46 @@ impl NinePatchScratch {
         if apart { 2 } else { 1 }
     }
 
-    /// The densities of some columns of a zone, counted from its first, and of what columns follow, at a place among the lattice's rows.
+    /// The densities of some columns of a zone, counted from its first, and of what columns follow, in a cell of the lattice.
     #[inline(always)]
     fn row<S: Simd>(
         &mut self,
         simd: S,
         zone: usize,
-        place: f64,
+        cell: &Cell,
         lattice: &Lattice,
         part: Range<usize>,
     ) -> &[f32] {
-        let knot = place.floor();
         let blocks = part.start / BLOCK..part.end.div_ceil(BLOCK);
-        if !lattice.is_apart {
-            let row = lattice.folded(knot as i64);
-            let slot = self.compute(simd, zone, row, lattice, blocks);
-            return &self.zones[zone].rows[slot][part.start..];
+        let kept = &self.zones[zone];
+        let is_ready = kept.cell == cell.rows
+            && kept.ready.start <= blocks.start
+            && blocks.end <= kept.ready.end;
+        if !is_ready {
+            for row in cell.distinct() {
+                self.compute(simd, zone, *row, lattice, blocks.clone());
+            }
         }
-        let first = knot as i64 - 1;
-        let row = lattice.folded(first);
-        if row == lattice.folded(first + 3) {
-            let slot = self.compute(simd, zone, row, lattice, blocks);
-            return &self.zones[zone].rows[slot][part.start..];
-        }
-        let mut slots = [0; 4];
-        for (slot, row) in slots.iter_mut().zip(first..) {
-            let row = lattice.folded(row);
-            *slot = self.compute(simd, zone, row, lattice, blocks.clone());
-        }
-        let weights = cubic::weights(place - knot);
         let zone = &mut self.zones[zone];
-        let [a, b, c, d] = slots.map(|slot| &zone.rows[slot]);
-        let (zero, one) = (f32x16::splat(simd, 0.0), f32x16::splat(simd, 1.0));
-        for block in blocks {
-            let columns = block * BLOCK..(block + 1) * BLOCK;
-            let a = f32x16::from_slice(simd, &a[columns.clone()]);
-            let b = f32x16::from_slice(simd, &b[columns.clone()]);
-            let c = f32x16::from_slice(simd, &c[columns.clone()]);
-            let d = f32x16::from_slice(simd, &d[columns.clone()]);
-            let sum = a * weights[0] + b * weights[1] + (c * weights[2] + d * weights[3]);
-            sum.max(zero)
-                .min(one)
-                .store_slice(&mut zone.values[columns]);
+        if !is_ready {
+            (zone.cell, zone.ready) = (cell.rows, blocks.clone());
         }
+        let [a, b, c, d] = cell.rows.map(slot);
+        if let [_] = cell.distinct() {
+            return &zone.rows[a][part.start..];
+        }
+        let columns = blocks.start * BLOCK..blocks.end * BLOCK;
+        let rows = [
+            &zone.rows[a][columns.clone()],
+            &zone.rows[b][columns.clone()],
+            &zone.rows[c][columns.clone()],
+            &zone.rows[d][columns.clone()],
+        ];
+        cubic::between(simd, rows, cell.weights, &mut zone.values[columns]);
         &zone.values[part.start..]
     }
 
-    /// Computes some blocks of a row of the lattice, as far as they are not there; where it is.
+    /// Computes some blocks of a row of the lattice, as far as they are not there.
     #[inline(always)]
     fn compute<S: Simd>(
         &mut self,
@@ -239,15 +237,15 @@ impl NinePatchScratch {
         row: i64,
         lattice: &Lattice,
         blocks: Range<usize>,
-    ) -> usize {
+    ) {
         let zone = &mut self.zones[zone];
-        let slot = row.rem_euclid(RING as i64) as usize;
+        let slot = slot(row);
         let done = &mut zone.done[slot];
         if zone.which[slot] != row {
             zone.which[slot] = row;
             *done = blocks.start..blocks.start;
         } else if done.start <= blocks.start && blocks.end <= done.end {
-            return slot;
+            return;
         }
         self.nodes.place(simd, &lattice.shape, lattice.y(row));
         let reach = Reach {
@@ -264,7 +262,7 @@ impl NinePatchScratch {
             reach.compute_all(simd, 0..count, &mut self.columns[0]);
             columns.spread(simd, &mut self.columns, &mut zone.rows[slot]);
             *done = 0..usize::MAX;
-            return slot;
+            return;
         }
         let before = blocks.start..done.start;
         let behind = done.end..blocks.end;
@@ -274,6 +272,5 @@ impl NinePatchScratch {
             }
         }
         *done = done.start.min(blocks.start)..done.end.max(blocks.end);
-        slot
     }
 }

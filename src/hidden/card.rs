@@ -9,14 +9,25 @@ pub(super) fn find(card: &Rounded, [width, height]: [u32; 2], mut push: impl FnM
     let (width, height) = (f64::from(width), f64::from(height));
     let first = card.min.y.ceil().clamp(0.0, height) as u32;
     let end = card.max.y.floor().clamp(0.0, height) as u32;
+    let columns = |left: f64, right: f64| {
+        let start = (card.min.x + left).ceil().clamp(0.0, width) as u32;
+        let end = (card.max.x - right).floor().clamp(0.0, width) as u32;
+        (start, end)
+    };
+    let (upper, lower) = (top_left.max(top_right), bottom_left.max(bottom_right));
+    let between = columns(0.0, 0.0);
     for row in first..end {
         // A row is narrowest where it is nearest to the rectangle's top or bottom.
         let above = f64::from(row) - card.min.y;
         let below = card.max.y - f64::from(row + 1);
-        let left = inset(top_left, above).max(inset(bottom_left, below));
-        let right = inset(top_right, above).max(inset(bottom_right, below));
-        let start = (card.min.x + left).ceil().clamp(0.0, width) as u32;
-        let end = (card.max.x - right).floor().clamp(0.0, width) as u32;
+        let (start, end) = if above >= upper && below >= lower {
+            between
+        } else {
+            columns(
+                inset(top_left, above).max(inset(bottom_left, below)),
+                inset(top_right, above).max(inset(bottom_right, below)),
+            )
+        };
         if start < end {
             push(row, start, end);
         }

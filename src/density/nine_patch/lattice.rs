@@ -13,17 +13,17 @@ pub(super) struct Lattice {
     /// How far a pixel's average reaches.
     pub(super) reach: f64,
     /// The y of row 0, and pixels from one to the next.
-    pub(super) start: f64,
-    pub(super) pitch: f64,
+    start: f64,
+    pitch: f64,
     /// Whether pixels are interpolated between them: otherwise there is one for each row of pixels.
-    pub(super) is_apart: bool,
+    is_apart: bool,
     /// The columns that are computed of a row.
     pub(super) columns: Columns,
     /// Rows after `straight` up to so many more are like it: they are left out.
-    pub(super) straight: i64,
-    pub(super) alike: i64,
+    straight: i64,
+    alike: i64,
     /// The row of which row 0 is the likeness, if the rectangle's lower half is its upper one's.
-    pub(super) mirror: Option<i64>,
+    mirror: Option<i64>,
 }
 
 impl Lattice {
@@ -77,27 +77,77 @@ impl Lattice {
         (y - self.start) / self.pitch
     }
 
-    /// Takes the next row of pixels: those that need the same rows one after another.
-    pub(super) fn next(&self, lines: &mut Range<i64>) -> Option<i64> {
-        let place = |line: i64| {
-            let place = self.row_at(line as f64);
-            self.mirror
-                .map_or(place, |mirror| place.min(mirror as f64 - place))
-        };
-        if !lines.is_empty() && place(lines.end - 1) < place(lines.start) {
-            lines.next_back()
+    /// The same in the half of which the other is the likeness.
+    fn folded_at(&self, y: f64) -> f64 {
+        let place = self.row_at(y);
+        self.mirror
+            .map_or(place, |mirror| place.min(mirror as f64 - place))
+    }
+
+    /// Rows of pixels and where they are among the lattice's: those that need the same rows one after another.
+    pub(super) fn lines(&self, lines: Range<i64>) -> impl Iterator<Item = (i64, f64)> {
+        let place = |line: i64| self.folded_at(line as f64);
+        let mut left = lines;
+        let mut ends = [place(left.start), place(left.end - 1)];
+        core::iter::from_fn(move || {
+            if left.is_empty() {
+                return None;
+            }
+            let [first, last] = ends;
+            if last < first {
+                left.end -= 1;
+                ends[1] = place(left.end - 1);
+                Some((left.end, last))
+            } else {
+                left.start += 1;
+                ends[0] = place(left.start);
+                Some((left.start - 1, first))
+            }
+        })
+    }
+
+    /// The cell at a place among the rows.
+    pub(super) fn cell(&self, place: f64) -> Cell {
+        let knot = place.floor();
+        let row = knot as i64;
+        if self.is_apart {
+            Cell {
+                rows: [row - 1, row, row + 1, row + 2].map(|row| self.folded(row)),
+                weights: cubic::weights(place - knot),
+            }
         } else {
-            lines.next()
+            Cell {
+                rows: [self.folded(row); 4],
+                weights: [0.0, 1.0, 0.0, 0.0],
+            }
         }
     }
 
     /// A row of which another is a copy, or itself, among those left.
-    pub(super) fn folded(&self, row: i64) -> i64 {
+    fn folded(&self, row: i64) -> i64 {
         let row = self.mirror.map_or(row, |mirror| row.min(mirror - row));
         if row <= self.straight {
             row
         } else {
             (row - self.alike).max(self.straight)
+        }
+    }
+}
+
+/// The four rows that pixels are interpolated from, and their weights.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Cell {
+    pub(super) rows: [i64; 4],
+    pub(super) weights: [f32; 4],
+}
+
+impl Cell {
+    /// The rows that it takes: one where all four are alike.
+    pub(super) fn distinct(&self) -> &[i64] {
+        if self.rows[0] == self.rows[3] {
+            &self.rows[..1]
+        } else {
+            &self.rows
         }
     }
 }
