@@ -138,7 +138,7 @@ fn draw_part(
         Method::Direct | Method::Grid | Method::NinePatch => {
             let levels = options.tolerance.as_levels();
             let mut edges = scratch.take();
-            shadow.edges_into(CURVES * levels, 1.0 / per_unit, &mut edges);
+            shadow.arcs_into(CURVES * levels, 1.0 / per_unit, &mut edges);
             let radius = shadow.radius() * per_unit;
             if method == Method::Grid && grid::suits(radius, levels, shadow.extent() * per_unit) {
                 dispatch!(level, simd => grid::fill(simd, &edges, radius, on, options, scratch, sink));

@@ -178,7 +178,11 @@ impl Hidden {
             let mut at = 0;
             self.rows.resize(height as usize + 1, 0);
             for (row, start) in self.rows.iter_mut().enumerate() {
-                while self.spans.get(at).is_some_and(|span| (span.row as usize) < row) {
+                while self
+                    .spans
+                    .get(at)
+                    .is_some_and(|span| (span.row as usize) < row)
+                {
                     at += 1;
                 }
                 *start = at as u32;

@@ -3,8 +3,10 @@
 //! Every number of the crate comes from an outline by sums over its edges, so all that it must promise is
 //! orientation: the area lies to the left of each edge where y points up, so that areas come out positive.
 
+mod arcs;
 mod chords;
 mod clip;
+mod fit;
 mod resolve;
 
 use core::f64::consts::{PI, TAU};
@@ -12,8 +14,8 @@ use core::f64::consts::{PI, TAU};
 use glam::DVec2;
 use libm::{atan2, cos, sin};
 
-pub(crate) use chords::Fineness;
 pub(crate) use clip::clip_to_box;
+pub(crate) use fit::Fineness;
 pub(crate) use resolve::{Winding, intersect_loops, resolve, resolve_loops};
 
 use crate::path::{EllipseArc, Segment, arc_steps};

@@ -18,6 +18,7 @@ use crate::grid::Grid;
 use crate::light::Projection;
 use crate::outline::{self, Edge, Fineness, Outline, Winding, resolve};
 use crate::paint::Paint;
+use crate::path::{Contour, Segment};
 use crate::plan;
 use crate::scratch::Scratch;
 use crate::shape::{Cover, Shape};
@@ -65,9 +66,27 @@ pub(crate) struct Census {
     pub(crate) line_length: f64,
     pub(crate) arcs: f64,
     pub(crate) arc_length: f64,
+    /// Curves that are drawn as arcs, and from end to end.
+    pub(crate) curves: f64,
+    pub(crate) curve_length: f64,
     /// Lines, arcs and curves as they were given.
     pub(crate) pieces: f64,
     pub(crate) size: DVec2,
+}
+
+impl Census {
+    pub(crate) fn add(&mut self, edge: &Edge) {
+        match edge {
+            Edge::Arc(arc) => {
+                self.arcs += 1.0;
+                self.arc_length += arc.sweep.abs() * arc.radius;
+            }
+            Edge::Line(line) | Edge::Border(line) => {
+                self.lines += 1.0;
+                self.line_length += (line.to - line.from).length();
+            }
+        }
+    }
 }
 
 /// A box from its least to its largest x and y, in scene units.
@@ -374,22 +393,14 @@ impl Shadow {
 
     /// What there is to draw.
     pub(crate) fn census(&self) -> Census {
-        // A curve is drawn as about so many lines.
+        // What is left when fills are resolved is drawn as about so many lines a curve.
         const LINES: f64 = 40.0;
         let mut census = Census::default();
         for edge in self.fixed.edges() {
             census.pieces += 1.0;
-            match edge {
-                Edge::Arc(arc) => {
-                    census.arcs += 1.0;
-                    census.arc_length += arc.sweep.abs() * arc.radius;
-                }
-                Edge::Line(line) | Edge::Border(line) => {
-                    census.lines += 1.0;
-                    census.line_length += (line.to - line.from).length();
-                }
-            }
+            census.add(edge);
         }
+        let simple = self.has_simple_curves();
         for contour in self
             .curved
             .iter()
@@ -399,8 +410,17 @@ impl Shadow {
             let mut from = contour.start;
             for segment in &contour.segments {
                 census.pieces += 1.0;
-                census.lines += LINES;
-                census.line_length += (segment.end() - from).length();
+                let length = (segment.end() - from).length();
+                if !simple {
+                    census.lines += LINES;
+                    census.line_length += length;
+                } else if matches!(segment, Segment::Line(_)) {
+                    census.lines += 1.0;
+                    census.line_length += length;
+                } else {
+                    census.curves += 1.0;
+                    census.curve_length += length;
+                }
                 from = segment.end();
             }
         }
@@ -408,14 +428,34 @@ impl Shadow {
         census
     }
 
-    /// Pushes the outline's edges as they are needed to draw it, loop after loop: on pixels of side `pixel` (scene units)
+    /// Whether its curves need no fill rule.
+    fn has_simple_curves(&self) -> bool {
+        let simple =
+            |group: &Vec<Shape>| matches!(group.as_slice(), [only] if only.cover == Cover::Simple);
+        self.curved.iter().all(simple)
+    }
+
+    /// Pushes the outline's edges as lines and circular arcs, loop after loop: on pixels of side `pixel` (scene units)
     /// no density moves by more than `levels`.
     ///
     /// Curves known to be simple take few lines and no memory of their own.
     pub(crate) fn edges_into(&self, levels: f64, pixel: f64, out: &mut Vec<Edge>) {
-        let simple =
-            |group: &Vec<Shape>| matches!(group.as_slice(), [only] if only.cover == Cover::Simple);
-        if !self.curved.iter().all(simple) {
+        self.fit(levels, pixel, Contour::chords, out);
+    }
+
+    /// The same with arcs in place of curves known to be simple.
+    pub(crate) fn arcs_into(&self, levels: f64, pixel: f64, out: &mut Vec<Edge>) {
+        self.fit(levels, pixel, Contour::arcs, out);
+    }
+
+    fn fit(
+        &self,
+        levels: f64,
+        pixel: f64,
+        push: impl Fn(&Contour, &Fineness, &mut Vec<Edge>),
+        out: &mut Vec<Edge>,
+    ) {
+        if !self.has_simple_curves() {
             out.extend(self.drawn_outline(levels, pixel).edges());
             return;
         }
@@ -424,7 +464,7 @@ impl Shadow {
         for shape in self.curved.iter().flatten() {
             let first = out.len();
             for contour in &shape.contours {
-                contour.chords(&fineness, out);
+                push(contour, &fineness, out);
             }
             turn_left(&mut out[first..]);
         }
@@ -549,7 +589,7 @@ const FINEST: f64 = 1.0 / 1_073_741_824.0;
 
 impl Shape {
     fn is_straight(&self) -> bool {
-        self.contours.iter().all(crate::path::Contour::is_straight)
+        self.contours.iter().all(Contour::is_straight)
     }
 }
 

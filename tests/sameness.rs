@@ -15,15 +15,15 @@ use tiny_skia::Pixmap;
 /// The hash of each group.
 const GOLDEN: [(&str, u64); 11] = [
     ("exact", 0xf8b0_4e1a_d8ba_d546),
-    ("auto", 0x8cad_30b2_61be_def8),
-    ("direct", 0x98af_81a2_38e0_f775),
-    ("grid", 0x8e18_25b0_cb9e_098e),
-    ("nine-patch", 0xfbcc_1a7a_bd6b_98fe),
+    ("auto", 0x0bf4_3abf_91f2_8b73),
+    ("direct", 0x7a9f_2792_77e1_0a71),
+    ("grid", 0x436f_046f_ebb1_56b0),
+    ("nine-patch", 0xc37e_8253_1e52_81ea),
     ("points", 0xed85_f785_6936_3e8b),
-    ("dithered paint", 0x60f8_2288_3fc0_c10d),
+    ("dithered paint", 0x2d2e_3c57_51e6_a393),
     ("masks", 0xfad7_7c0a_a8c7_f732),
     ("meshes", 0xdce9_9501_2da0_092e),
-    ("pictures", 0x59d3_8cc5_feba_a570),
+    ("pictures", 0x93ca_de08_ac7e_1dff),
     ("svg", 0x608a_e391_8ec0_a7f2),
 ];
 

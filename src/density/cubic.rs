@@ -22,8 +22,16 @@ pub(super) fn between<S: Simd>(simd: S, rows: [&[f32]; 4], weights: [f32; 4], to
     let [a, b, c, d] = rows;
     let (zero, one) = (f32x16::splat(simd, 0.0), f32x16::splat(simd, 1.0));
     let to = to.as_chunks_mut::<LANES>().0.iter_mut();
-    let outer = a.as_chunks::<LANES>().0.iter().zip(d.as_chunks::<LANES>().0);
-    let inner = b.as_chunks::<LANES>().0.iter().zip(c.as_chunks::<LANES>().0);
+    let outer = a
+        .as_chunks::<LANES>()
+        .0
+        .iter()
+        .zip(d.as_chunks::<LANES>().0);
+    let inner = b
+        .as_chunks::<LANES>()
+        .0
+        .iter()
+        .zip(c.as_chunks::<LANES>().0);
     for ((to, (a, d)), (b, c)) in to.zip(outer).zip(inner) {
         let (a, b) = (f32x16::from_slice(simd, a), f32x16::from_slice(simd, b));
         let (c, d) = (f32x16::from_slice(simd, c), f32x16::from_slice(simd, d));

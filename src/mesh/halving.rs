@@ -140,7 +140,8 @@ fn samples(levels: f64) -> f64 {
 /// Whether an outline has so little between its corners that refinement would take about as many triangles.
 fn is_detailed(shadow: &Shadow) -> bool {
     let census = shadow.census();
-    census.line_length + census.arc_length <= DETAIL * shadow.radius() * census.pieces
+    census.line_length + census.arc_length + census.curve_length
+        <= DETAIL * shadow.radius() * census.pieces
 }
 
 /// Pushes a shadow's edges as samples are drawn of them.

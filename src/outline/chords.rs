@@ -1,37 +1,19 @@
-//! Curves as pixels need them: by lines that are not the curve's chords but cover the same area.
+//! Curves as lines that cover the same area.
 //!
-//! What a pixel sees of a caster is an area, that inside of a disc. A parabola's piece with the chord c and the rise S,
-//! from the middle of the chord to the middle of the piece, is replaced by two lines from its ends to an apex 4/3 S from
-//! the middle of the chord. Along the chord, t from 0 to 1, the curve rises by 4 t (1 - t) S, the lines by 8/3 t S up to
-//! the middle: the curve is up to S / 9 above the lines, from a third on up to S / 3 below, and the area between is 0 in
-//! each half. Of pieces that lie in the disc as a whole nothing remains. Where the disc's edge cuts through a piece no
-//! more is left than the area from an end to the third, 2/81 of |c × S|.
-//!
-//! So there are two ways for a piece to be fine enough:
-//!
-//! - It is *narrow*: no point of it is farther from its lines than flattening allows anyway.
-//! - It is *balanced*: where the disc's edge crosses the curve, going in and coming out, it leaves at most 4/81 |c × S|.
-//!   A disc smaller than the piece cannot see more either: that is all by which the lines lie above the curve, and all by
-//!   which they lie below.
-//!
-//! Only where the disc's edge runs along the curve may it cut through many pieces, and each of them twice. That takes a
-//! curve with nearly the disc's own radius all along: so the sum over such pieces has a bound of its own. For circles
-//! whose radius differs from the disc's by a fifth the first bound held, at a twentieth it was passed by half.
+//! A parabola's part with the chord c and the rise S, from the middle of the chord to the middle of the part, is replaced by two
+//! lines from its ends to an apex 4/3 S from the middle of the chord. Along the chord, t from 0 to 1, the curve rises by
+//! 4 t (1 - t) S, the lines by 8/3 t S up to the middle: the curve is up to S / 9 above the lines, from a third on up to S / 3 below,
+//! and the area between is 0 in each half. From an end to the third it is 2/81 of |c × S|.
 //!
 //! Cubics differ from the parabolas that go their way by √3 / 36 of their third difference at most, to one side in their
 //! first half and as much to the other in the second: they get the same two lines, by their own area.
 
-use core::f64::consts::PI;
-
 use glam::DVec2;
 use libm::cbrt;
 
-use super::{Edge, Line, circular};
-use crate::density::flatness;
-use crate::path::{Contour, Curve, Part, Segment};
-
-/// A curve has no more parts than this, whatever is asked for.
-const MOST_PARTS: u32 = 4096;
+use super::Edge;
+use super::fit::{self, BORDERS, Fineness, Fit, bulge, is_hairpin, push_line};
+use crate::path::{Contour, Part};
 
 /// The area that is left where the disc's edge crosses a balanced curve twice, over |c × S|.
 const LOBES: f64 = 4.0 / 81.0;
@@ -42,173 +24,78 @@ const TWIST_REACH: f64 = 0.048_112_522_432_468_816;
 /// The area that this leaves at two crossings, over the third difference times the derivative.
 const TWIST_LOBES: f64 = 1.0 / 32.0;
 
-/// For how many borders in one disc the error is meant: a stroke has two, and so has the tip of a corner. Counted for one,
-/// hearts and letters passed their tolerance by half, others by more.
-const BORDERS: f64 = 2.0;
-
-/// How near a curve's radius must be to the disc's for the disc's edge to run along it.
-const ALONG: f64 = 0.05;
-
-/// How wrong the lines of a curve may be.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Fineness {
-    /// How far lines may be from the curve when their errors do not cancel.
-    flat: f64,
-    /// The area by which what a disc or a pixel sees may be wrong.
-    area: f64,
-    /// The disc's radius.
-    radius: f64,
-}
-
-impl Fineness {
-    /// What moves no density by more than `levels`, for discs of `radius` and pixels of side `pixel`.
-    pub(crate) fn new(levels: f64, radius: f64, pixel: f64) -> Self {
-        // The density is an average over both: the larger one alone makes it right.
-        let seen = (PI * radius * radius).max(pixel * pixel);
-        Self {
-            flat: flatness(levels, radius, pixel),
-            area: levels / 255.0 * seen,
-            radius,
-        }
-    }
+/// Two lines in place of a part.
+pub(super) struct Chords {
+    part: Part,
+    /// By how much the apex is moved for the area that the part has beyond the parabola's.
+    across: DVec2,
 }
 
 impl Contour {
     /// Pushes the contour's edges, closed: lines and circular arcs as they are, other curves as lines that cover the same
     /// area.
     pub(crate) fn chords(&self, fineness: &Fineness, out: &mut Vec<Edge>) {
-        let mut from = self.start;
-        for segment in &self.segments {
-            push_segment(from, segment, fineness, out);
-            from = segment.end();
-        }
-        push_line(from, self.start, out);
+        fit::push_contour::<Chords>(self, fineness, out);
     }
 }
 
-fn push_segment(from: DVec2, segment: &Segment, fineness: &Fineness, out: &mut Vec<Edge>) {
-    if let Segment::Arc(arc) = segment
-        && let Some(arcs) = circular(from, arc)
-    {
-        out.extend(arcs.map(Edge::Arc));
-        return;
+impl Fit for Chords {
+    fn root_of_width(excess: f64) -> f64 {
+        excess.sqrt()
     }
-    let Some(curve) = Curve::new(from, segment) else {
-        push_line(from, segment.end(), out);
-        return;
-    };
-    for part in curve.parts(part_count(&curve, fineness)) {
-        let apex = apex(&part);
-        push_line(part.from, apex, out);
-        push_line(apex, part.to, out);
+
+    fn root_of_area(excess: f64) -> f64 {
+        cbrt(excess)
     }
-}
 
-fn push_line(from: DVec2, to: DVec2, out: &mut Vec<Edge>) {
-    if from != to {
-        out.push(Edge::Line(Line { from, to }));
-    }
-}
-
-/// The point that makes a triangle of the part's area with its ends: that of the parabola, moved across the chord.
-fn apex(part: &Part) -> DVec2 {
-    let parabola = part.chord() / 2.0 + part.rise() * (4.0 / 3.0);
-    part.from + parabola + across(part)
-}
-
-/// By how much the apex is moved for the area that the part has beyond the parabola's.
-fn across(part: &Part) -> DVec2 {
-    let chord = part.chord();
-    if is_hairpin(part) {
-        return DVec2::ZERO;
-    }
-    -chord.perp() * (part.double_area_beyond_parabola() / chord.length_squared())
-}
-
-/// Whether a part ends so near its start that its chord says little about it.
-fn is_hairpin(part: &Part) -> bool {
-    let longest = part
-        .leaving
-        .length_squared()
-        .max(part.arriving.length_squared());
-    part.chord().length_squared() * 64.0 <= longest
-}
-
-/// Into how many parts a curve is cut: about the fewest that are fine enough.
-fn part_count(curve: &Curve, fineness: &Fineness) -> u32 {
-    let mut count = curve.fewest_parts();
-    while count < MOST_PARTS {
-        let excess = excess(curve, count, fineness);
-        if excess <= 1.0 {
-            break;
-        }
-        // Few parts miss by more than the powers of their number say: shorter steps do not go past the fewest.
-        let step = f64::from(count) * (excess - 1.0) * 0.7;
-        count = (f64::from(count) + step.ceil()).min(f64::from(MOST_PARTS)) as u32;
-    }
-    count
-}
-
-/// How many times more parts it would take for all to be fine enough; less than 1 says no more than that they are.
-fn excess(curve: &Curve, count: u32, fineness: &Fineness) -> f64 {
-    let (mut worst, mut length, mut along): (f64, f64, f64) = (0.0, 0.0, 0.0);
-    let mut all_along = true;
-    for part in curve.parts(count) {
-        let chord = part.chord().length();
-        length += chord;
-        let runs_along = runs_along(&part, chord, fineness.radius);
-        all_along &= runs_along;
-        let unbalanced = unbalanced(&part) / fineness.area;
-        if unbalanced <= 1.0 && !runs_along {
-            continue;
-        }
-        let wide = deviation(&part) / fineness.flat;
-        if wide > 1.0 {
-            worst = worst.max(wide.sqrt().min(cbrt(unbalanced)));
-            along += f64::from(u8::from(runs_along)) * LOBES * bulge(&part);
+    fn new(part: &Part) -> Self {
+        let chord = part.chord();
+        let across = if is_hairpin(part) {
+            DVec2::ZERO
+        } else {
+            -chord.perp() * (part.double_area_beyond_parabola() / chord.length_squared())
+        };
+        Self {
+            part: *part,
+            across,
         }
     }
-    if along > 0.0 {
-        // The next curve may go on as this one ends; and all may, round the disc, where all of this one does.
-        let around = 2.0 * PI * fineness.radius / length;
-        let rounds = if all_along { around.max(2.0) } else { 2.0 };
-        worst = worst.max((along * rounds / fineness.area).sqrt());
+
+    fn deviation(&self) -> f64 {
+        let part = &self.part;
+        part.rise().length() / 3.0 + part.twist().length() * TWIST_REACH + self.across.length()
     }
-    worst
-}
 
-/// How far any point of the part may be from its two lines.
-fn deviation(part: &Part) -> f64 {
-    part.rise().length() / 3.0 + part.twist().length() * TWIST_REACH + across(part).length()
-}
-
-/// The area that the disc's edge may leave over where it cuts through the part.
-fn unbalanced(part: &Part) -> f64 {
-    if is_hairpin(part) {
-        return f64::INFINITY;
+    fn lobes(&self) -> f64 {
+        LOBES * bulge(&self.part)
     }
-    let twist = part.twist();
-    let turn = [part.leaving, part.arriving].map(|along| twist.perp_dot(along).abs());
-    let left = LOBES * bulge(part) + TWIST_LOBES * turn[0].max(turn[1]);
-    BORDERS * left + part.double_area_beyond_parabola().abs() / 2.0
-}
 
-/// |c × S|, which is 3/2 of the area between the parabola and its chord.
-fn bulge(part: &Part) -> f64 {
-    part.chord().perp_dot(part.rise()).abs()
-}
+    fn unbalanced(&self) -> f64 {
+        let part = &self.part;
+        if is_hairpin(part) {
+            return f64::INFINITY;
+        }
+        let twist = part.twist();
+        let turn = [part.leaving, part.arriving].map(|along| twist.perp_dot(along).abs());
+        let left = self.lobes() + TWIST_LOBES * turn[0].max(turn[1]);
+        BORDERS * left + part.double_area_beyond_parabola().abs() / 2.0
+    }
 
-/// Whether a part is bent nearly as much as the disc's edge.
-fn runs_along(part: &Part, chord: f64, radius: f64) -> bool {
-    let turn = 8.0 * bulge(part) / (chord * chord);
-    // The turn over the length is the curvature, some percent too large where the part turns far.
-    (turn * radius / chord - 1.0).abs() < ALONG * (1.0 + turn * turn)
+    fn push(&self, out: &mut Vec<Edge>) {
+        // The point that makes a triangle of the part's area with its ends: that of the parabola, moved across the chord.
+        let Part { from, to, .. } = self.part;
+        let apex = from + (self.part.chord() / 2.0 + self.part.rise() * (4.0 / 3.0) + self.across);
+        push_line(from, apex, out);
+        push_line(apex, to, out);
+    }
 }
 
 #[cfg(test)]
 mod tests {
+    use core::f64::consts::PI;
+
     use super::*;
-    use crate::density::at_point;
+    use crate::density::{at_point, flatness};
     use crate::outline::Outline;
     use crate::path::{FillRule, Path};
     use crate::shape::Shape;

@@ -141,6 +141,19 @@ impl Part {
         self.leaving + self.arriving - 2.0 * self.chord()
     }
 
+    /// The point at a parameter from 0 to 1.
+    pub(crate) fn at(&self, t: f64) -> DVec2 {
+        let s = 1.0 - t;
+        let along = self.chord() * (t * t * (s + s + 1.0));
+        self.from + along + self.leaving * (t * s * s) - self.arriving * (t * t * s)
+    }
+
+    /// Twice the area between it and its chord.
+    pub(crate) fn double_area(&self) -> f64 {
+        (self.leaving - self.arriving).perp_dot(self.chord()) / 6.0
+            + self.double_area_beyond_parabola()
+    }
+
     /// Twice the area between it and its chord, beyond that of the parabola that goes the way it does.
     pub(crate) fn double_area_beyond_parabola(&self) -> f64 {
         let bend = (self.leaving - self.arriving).perp_dot(self.chord());
@@ -153,12 +166,6 @@ mod tests {
     use core::f64::consts::PI;
 
     use super::*;
-
-    /// Twice the area between a part and its chord, by its own derivatives.
-    fn double_area(part: &Part) -> f64 {
-        (part.leaving - part.arriving).perp_dot(part.chord()) / 6.0
-            + part.double_area_beyond_parabola()
-    }
 
     #[test]
     fn parts_join_and_sum_up_to_the_whole() {
@@ -177,7 +184,7 @@ mod tests {
             let of_chords = |p: &Part| (p.from - from).perp_dot(p.chord());
             parts
                 .iter()
-                .map(|part| of_chords(part) + double_area(part))
+                .map(|part| of_chords(part) + part.double_area())
                 .sum::<f64>()
         };
         let whole = area(1);
@@ -204,7 +211,7 @@ mod tests {
         assert_eq!(curve.fewest_parts(), 4);
         let exact = arc.u.perp_dot(arc.v) * (FRAC_PI_4 - sin(FRAC_PI_4));
         for part in curve.parts(4) {
-            assert!((double_area(&part) / exact - 1.0).abs() < 1e-4);
+            assert!((part.double_area() / exact - 1.0).abs() < 1e-4);
         }
     }
 }

@@ -41,14 +41,18 @@ pub(super) fn candidate(shadow: &Shadow, levels: f64) -> Candidate {
 /// About how many triangles fill an outline.
 fn facets(shadow: &Shadow) -> f64 {
     let census = shadow.census();
-    census.lines + ARC_FACETS * census.arcs
+    census.lines + CURVE_FACETS * census.curves + ARC_FACETS * census.arcs
 }
 
 /// About how many triangles a penumbra takes at one level: so many a corner, or where corners are the joints of a curve and
 /// closer than that, so many a penumbra radius along it; and so many a radius along arcs.
 fn triangles(shadow: &Shadow, radius: f64) -> f64 {
     let census = shadow.census();
-    let corners = (CORNER * census.lines).min(CURVE * census.line_length / radius);
+    let (lines, length) = (
+        census.lines + CURVE_FACETS * census.curves,
+        census.line_length + census.curve_length,
+    );
+    let corners = (CORNER * lines).min(CURVE * length / radius);
     (corners + ARC * census.arc_length / radius).min(MOST)
 }
 
@@ -56,6 +60,9 @@ fn triangles(shadow: &Shadow, radius: f64) -> f64 {
 const CORNER: f64 = 200.0;
 const CURVE: f64 = 150.0;
 const ARC: f64 = 70.0;
+
+/// About how many chords a curve has.
+const CURVE_FACETS: f64 = 40.0;
 
 /// Chords of an arc of a hard shadow.
 const ARC_FACETS: f64 = 300.0;
