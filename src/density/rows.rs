@@ -324,9 +324,7 @@ impl Rows {
         let stride = LANES as i64;
         let start = self.values.len();
         let left = columns.start - stride;
-        let count = (columns.end + stride - left) as usize;
-        self.values.resize(start + count, 0.0);
-        let values = &mut self.values[start..];
+        let count = columns.end + stride - left;
         // Steps are summed before they are rounded: what lies left of the columns that are drawn changes nothing.
         self.steps.clear();
         let stepping = self.order[cluster.clone()].iter();
@@ -337,12 +335,14 @@ impl Rows {
         self.steps.sort_unstable();
         let (mut sum, mut at) = (base, 0);
         for &(end, step) in &self.steps {
-            let end = (end - left).clamp(at as i64, count as i64) as usize;
-            values[at..end].fill((sum as f64 / UNIT) as f32);
+            at = (end - left).clamp(at, count);
+            let end = start + at as usize;
+            self.values.resize(end, (sum as f64 / UNIT) as f32);
             sum += step;
-            at = end;
         }
-        values[at..].fill((sum as f64 / UNIT) as f32);
+        let end = start + count as usize;
+        self.values.resize(end, (sum as f64 / UNIT) as f32);
+        let values = &mut self.values[start..];
         for &index in &self.order[cluster] {
             let entry = &self.entries[index as usize];
             let skipped = (columns.start - entry.first).max(0) / stride;
@@ -377,9 +377,14 @@ impl Rows {
                 }
             }
         }
-        for value in values.iter_mut() {
-            *value = value.clamp(0.0, 1.0);
-        }
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                for value in values.iter_mut() {
+                    *value = value.clamp(0.0, 1.0);
+                }
+            },
+        );
         self.spans.push(Span {
             columns,
             kind: Kind::Values(start + LANES),
