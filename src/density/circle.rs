@@ -115,7 +115,7 @@ impl Profile {
             density,
         };
         let edges = edges.map(|edge| edge.mapped(factor, |p| (p - center) * factor));
-        self.rows.load(edges, Window::Disc);
+        self.rows.load(edges, Window::Disc, &Points::CENTER);
         self.densities.clear();
         self.densities.resize(INTERVALS + 2, 0.0);
         let columns = 0..INTERVALS as i64 + 1;

@@ -36,7 +36,7 @@ pub(crate) fn fill<S: Simd>(
     let placed = edges
         .iter()
         .map(|edge| edge.mapped(scale / unit, |p| frame.place(p) / unit));
-    scratch.rows.load(placed, sampling.window);
+    scratch.rows.load(placed, sampling.window, &points);
     let (rows, wanted) = (&mut scratch.rows, &mut scratch.wanted);
     let lattice = Lattice {
         window: sampling.window,

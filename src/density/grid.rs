@@ -189,7 +189,7 @@ pub(crate) fn fill<S: Simd>(
         }
         if !weaver.kept.coarse.is_empty() {
             if !loaded {
-                pixel_rows.load(placed(radius), Window::Disc);
+                pixel_rows.load(placed(radius), Window::Disc, &Points::CENTER);
                 loaded = true;
             }
             let y = (line as f64 + frame.phase.y + 0.5) / radius;

@@ -20,7 +20,7 @@ use super::Sink;
 use super::lanes::{LANES, lanes};
 use crate::outline::Edge;
 use kernels::{Ramp, RowArc, RowCut, RowLine, WideArc, WideLine};
-use pieces::Piece;
+use pieces::{Passing, Piece};
 
 /// What a density is the average over.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -181,9 +181,14 @@ pub(crate) struct Lattice {
 const STRETCH: i64 = 512;
 
 impl Rows {
-    /// Takes the outline's edges, in the windows' unit, for windows of the kind given.
-    pub(crate) fn load(&mut self, edges: impl Iterator<Item = Edge>, window: Window) {
-        pieces::cut(edges, window, &mut self.pieces);
+    /// Takes the outline's edges, in the windows' unit, for windows of the kind given and pixels that average over these points.
+    pub(crate) fn load(
+        &mut self,
+        edges: impl Iterator<Item = Edge>,
+        window: Window,
+        points: &Points<'_>,
+    ) {
+        pieces::cut(edges, window, points.wide.as_ref(), &mut self.pieces);
         self.rewind();
     }
 
@@ -239,9 +244,15 @@ impl Rows {
             } else {
                 f64::NEG_INFINITY
             });
-            if let Some(wide) = points.wide.filter(|wide| piece.passes(y, wide)) {
-                maker.add_wide(index, piece, y, &wide, points.lines);
-                continue;
+            if let Some(wide) = &points.wide {
+                match piece.passes(y, wide) {
+                    Passing::All => {
+                        maker.add_wide(index, piece, y, wide, points.lines);
+                        continue;
+                    }
+                    Passing::Elsewhere => continue,
+                    Passing::Not => {}
+                }
             }
             for (number, line) in points.lines.iter().enumerate() {
                 maker.add(index, piece, y + line.offset, number as u32, line);
@@ -545,7 +556,7 @@ impl Maker<'_> {
     /// Adds a piece that passes all that a pixel averages over.
     #[inline(always)]
     fn add_wide(&mut self, index: u32, piece: &Piece, y: f64, wide: &Wide, lines: &[Line]) {
-        let falls = 0.25_f32.copysign((piece.from.y - y) as f32);
+        let falls = 0.25_f32.copysign((piece.from.y - piece.to.y) as f32);
         let halves = [falls, -falls];
         // As the rows of points would have it one by one, so that pieces that end in them cancel it.
         let step = lines.iter().map(|line| step(line, halves)).sum();

@@ -27,7 +27,7 @@ const MOST: usize = 9;
 const SQUARES: f64 = 0.26;
 
 /// From this penumbra radius in pixels on, squares are so small beside discs that differences across them lose their digits.
-const WIDE: f64 = 1.65;
+const WIDE: f64 = 1.9;
 
 /// Nodes and weights of the Gauss-Legendre rules on -1 to 1, the half that is not negative (Abramowitz & Stegun 1964, table
 /// 25.4).

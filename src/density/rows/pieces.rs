@@ -16,6 +16,19 @@ pub(super) struct Piece {
     pub(super) from: DVec2,
     pub(super) to: DVec2,
     pub(super) form: Form,
+    /// The heights between which it and what goes on from it as it does are as good as one piece.
+    pub(super) chain: [f64; 2],
+}
+
+/// How a piece stands to all that the pixels of a row average over.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Passing {
+    /// It passes it, or stands for its chain, which does.
+    All,
+    /// Its chain passes it, and another piece stands for that.
+    Elsewhere,
+    /// It may end within it.
+    Not,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,14 +54,19 @@ const LARGEST: f64 = 1024.0;
 /// How far lines in place of an arc may move the density: 0.1 level.
 const ERROR: f64 = 4e-4;
 
-/// Cuts edges into `pieces`, sorted by where they begin.
-pub(super) fn cut(edges: impl Iterator<Item = Edge>, window: Window, pieces: &mut Vec<Piece>) {
+/// Cuts edges into `pieces`, sorted by where they begin. `wide` is what pixels average over where that is more than a window.
+pub(super) fn cut(
+    edges: impl Iterator<Item = Edge>,
+    window: Window,
+    wide: Option<&Wide>,
+    pieces: &mut Vec<Piece>,
+) {
     pieces.clear();
     // The first piece of the loop that is being cut.
     let (mut first, mut end) = (0, None);
     for edge in edges {
         if end != Some(edge.from()) {
-            close(pieces, first);
+            close(pieces, first, wide);
             first = pieces.len();
         }
         end = Some(edge.to());
@@ -60,7 +78,7 @@ pub(super) fn cut(edges: impl Iterator<Item = Edge>, window: Window, pieces: &mu
             Edge::Arc(arc) => push_arc(&arc, first, pieces),
         }
     }
-    close(pieces, first);
+    close(pieces, first, wide);
     let key = |p: &Piece| [p.low, p.high, p.from.x, p.to.x];
     pieces.sort_unstable_by(|a, b| {
         let pairs = key(a).into_iter().zip(key(b));
@@ -81,14 +99,32 @@ pub(crate) fn each_line(edges: impl Iterator<Item = Edge>, mut line: impl FnMut(
     }
 }
 
-/// Joins a loop's last piece with its first where these are one arc.
-fn close(pieces: &mut Vec<Piece>, first: usize) {
+/// Ends a loop: joins its last piece with its first where these are one arc, and finds the chains.
+fn close(pieces: &mut Vec<Piece>, first: usize, wide: Option<&Wide>) {
     if pieces.len() > first + 1
         && let Some(last) = pieces.last().copied()
         && let Some(joined) = last.joined(&pieces[first])
     {
         pieces[first] = joined;
         pieces.pop();
+    }
+    if let Some(wide) = wide {
+        link(&mut pieces[first..], wide);
+    }
+}
+
+/// Finds the chains of a loop's pieces.
+fn link(pieces: &mut [Piece], wide: &Wide) {
+    let count = pieces.len();
+    // Along the loop and back, and on beyond where it begins.
+    let along = (0..2 * count).map(|at| (at % count, (at + 1) % count));
+    let back = along.clone().rev().map(|(from, to)| (to, from));
+    for (from, to) in along.chain(back) {
+        let (a, b) = (pieces[from], pieces[to]);
+        if a.goes_on(&b, wide) || b.goes_on(&a, wide) {
+            let [low, high] = &mut pieces[to].chain;
+            (*low, *high) = (low.min(a.chain[0]), high.max(a.chain[1]));
+        }
     }
 }
 
@@ -110,6 +146,7 @@ fn push_line(from: DVec2, to: DVec2, pieces: &mut Vec<Piece>) {
             slope: along.x / along.y,
             width: 1.0 / along.y.abs(),
         },
+        chain: [from.y.min(to.y), from.y.max(to.y)],
     });
 }
 
@@ -149,6 +186,7 @@ fn push_arc(arc: &Arc, first: usize, pieces: &mut Vec<Piece>) {
                 turn,
                 side: 1.0_f64.copysign(middle),
             },
+            chain: [from.y.min(to.y), from.y.max(to.y)],
         };
         match pieces
             .last()
@@ -238,12 +276,53 @@ impl Piece {
             && center.distance(c) < SAME
             && (radius - r).abs() < SAME
             && radius >= SQRT_2;
+        let (low, high) = (self.low.min(next.low), self.high.max(next.high));
         same.then(|| Self {
-            low: self.low.min(next.low),
-            high: self.high.max(next.high),
+            low,
+            high,
             to: next.to,
+            chain: [low, high],
             ..*self
         })
+    }
+
+    /// Whether another piece goes on from this one so nearly as it would itself that what pixels average over hardly shows it.
+    fn goes_on(&self, next: &Self, wide: &Wide) -> bool {
+        // By so many levels each a bend of the direction and of the curvature may show.
+        const SHOWN: f64 = 0.07;
+        let (
+            Form::Arc {
+                center,
+                radius,
+                turn,
+                side,
+            },
+            Form::Arc {
+                center: c,
+                radius: r,
+                turn: t,
+                side: s,
+            },
+        ) = (self.form, next.form)
+        else {
+            return false;
+        };
+        let reach = wide.half + wide.radius;
+        // What is as high is met with one bend at most above its middle and one below it.
+        let fits = |piece: &Self| piece.is_straight(wide) && piece.high - piece.low >= reach;
+        if self.to != next.from || turn * side != t * s || !fits(self) || !fits(next) {
+            return false;
+        }
+        // A bend of the direction by b leaves b s² / 2 of the area up to the distance s from it, one of the curvature b s³ / 6.
+        let seen = (PI * wide.radius * wide.radius).max(4.0 * wide.half * wide.half);
+        let shown = |area: f64| area.abs() / seen * 255.0 <= SHOWN;
+        let spokes = [
+            (self.to - center) * (turn / radius),
+            (next.from - c) * (t / r),
+        ];
+        spokes[0].dot(spokes[1]) > 0.0
+            && shown(spokes[0].perp_dot(spokes[1]) * reach * reach / 2.0)
+            && shown((turn / radius - t / r) * reach * reach * reach / 6.0)
     }
 
     #[inline(always)]
@@ -303,20 +382,32 @@ impl Piece {
         [left, right.max(left)]
     }
 
-    /// Whether it passes the whole height of what a pixel of the row at `y` averages over, and is straight enough there.
+    /// Whether it is as good as straight to what a pixel averages over.
     #[inline(always)]
-    pub(super) fn passes(&self, y: f64, wide: &Wide) -> bool {
+    fn is_straight(&self, wide: &Wide) -> bool {
         // Twice 2 levels at most lie between an arc and the line that touches it: so many half heights of the profile.
         const BENT: f64 = 10.4;
-        let reach = wide.half + wide.radius;
-        let straight = match self.form {
+        match self.form {
             Form::Line { .. } => true,
             Form::Arc { radius, .. } => {
                 let squares = wide.half * wide.half + wide.radius * wide.radius;
                 radius * wide.half.max(wide.radius) >= BENT * squares
             }
-        };
-        straight && self.low <= y - reach && self.high >= y + reach
+        }
+    }
+
+    /// Whether it passes the whole height of what a pixel of the row at `y` averages over, and is straight enough there.
+    #[inline(always)]
+    pub(super) fn passes(&self, y: f64, wide: &Wide) -> Passing {
+        let reach = wide.half + wide.radius;
+        let [low, high] = self.chain;
+        if y - reach < low || high < y + reach || !self.is_straight(wide) {
+            Passing::Not
+        } else if self.low <= y && y < self.high {
+            Passing::All
+        } else {
+            Passing::Elsewhere
+        }
     }
 
     /// The least and the largest x from which a pixel of the row at `y` averages over points that see the piece.
@@ -462,5 +553,70 @@ impl Piece {
                 }
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// From the x axis on, an arc about the origin and another that goes on from it: by so much larger and with its direction
+    /// bent by an angle.
+    fn arcs(larger: f64, bend: f64, turns: [f64; 2]) -> Vec<Piece> {
+        let arc = |center: DVec2, radius: f64, start: f64, sweep: f64| Arc {
+            center,
+            radius,
+            start,
+            sweep,
+            from: center + radius * DVec2::from_angle(start),
+            to: center + radius * DVec2::from_angle(start + sweep),
+        };
+        let first = arc(DVec2::ZERO, 30.0, 0.1, turns[0]);
+        let (radius, start) = (30.0 + larger, 0.1 + turns[0] + bend);
+        let center = first.to - radius * DVec2::from_angle(start);
+        let mut next = arc(center, radius, start, turns[1]);
+        next.from = first.to;
+        let mut pieces = Vec::new();
+        let wide = Wide {
+            half: 0.5,
+            radius: 1.0,
+        };
+        let edges = [first, next].map(Edge::Arc);
+        cut(edges.into_iter(), Window::Disc, Some(&wide), &mut pieces);
+        pieces
+    }
+
+    #[test]
+    fn arcs_that_go_on_as_they_were_are_one_chain() {
+        let turns = [0.3, 0.4];
+        for (larger, bend, is_one) in [
+            (0.5, 0.0, true),
+            (0.5, 1e-4, true),
+            (0.5, 0.05, false),
+            (60.0, 0.0, false),
+        ] {
+            let pieces = arcs(larger, bend, turns);
+            let whole = [pieces[0].low, pieces[1].high];
+            let chains = [pieces[0].chain, pieces[1].chain];
+            assert_eq!(chains == [whole; 2], is_one, "{larger}, {bend}");
+        }
+        // Too low to be met with one bend only.
+        let pieces = arcs(0.5, 0.0, [0.3, 0.04]);
+        assert_eq!(pieces[0].chain, [pieces[0].low, pieces[0].high]);
+    }
+
+    #[test]
+    fn one_piece_of_a_chain_stands_for_it() {
+        let pieces = arcs(0.5, 0.0, [0.3, 0.4]);
+        let wide = Wide {
+            half: 0.5,
+            radius: 1.0,
+        };
+        let joint = pieces[0].high;
+        assert_eq!(joint, pieces[1].low);
+        let passing = |y: f64| [0, 1].map(|piece| pieces[piece].passes(y, &wide));
+        assert_eq!(passing(joint - 0.7), [Passing::All, Passing::Elsewhere]);
+        assert_eq!(passing(joint), [Passing::Elsewhere, Passing::All]);
+        assert_eq!(passing(pieces[0].low + 1.0), [Passing::Not; 2]);
     }
 }
