@@ -38,17 +38,16 @@ const SIDE: usize = 32;
 
 /// Samples a penumbra radius at a tolerance of one level. Fewer leave so much unknown between them that triangles become as
 /// small as they allow; more take longer for the same triangles.
-const SAMPLES: f64 = 20.0;
+const SAMPLES: f64 = 22.0;
 
-/// How often a lattice is laid: where one shows too little of what lies between its samples, it tells how much finer the next one
-/// has to be, so many times at least.
-const LATTICES: u32 = 3;
+/// How often a lattice is laid: one that shows too little of what lies between its samples tells how much finer the next has to be,
+/// so many times at least.
+const LATTICES: u32 = 4;
 const FINER: f64 = 1.05;
 
-/// So many times as many samples a penumbra radius are the most.
+/// How many times as many samples a penumbra radius are tried at most, and how many times as many from try to try where tips
+/// are hidden.
 const FINEST: f64 = 4.0;
-
-/// The same from step to step until tips are shown.
 const FINER_FOR_TIPS: f64 = 1.25;
 
 /// The fewest at large tolerances.

@@ -11,6 +11,10 @@ const BETWEEN: f32 = 0.26;
 /// Densities so near to 0 or 1 are that: a thousandth of a level.
 const NOISE: f32 = 4e-6;
 
+/// How much of the largest such part may be anywhere, hidden from the samples beside it: where two ends of penumbrae nearly coincide,
+/// density goes with the power 0.5 of the distance.
+const HIDDEN: f32 = 0.75;
+
 /// From how many samples away bends are measured: about as far as triangles reach.
 const BEND: usize = 3;
 
@@ -85,12 +89,13 @@ impl Tube {
         self.balanced[y * self.size[0] + x]
     }
 
-    /// Lays the tube about the samples, and gives how much density bends between them over what leaves it open: above 1, they are
-    /// too far apart.
+    /// Lays the tube about the samples, and gives how much density bends between them over what they may be apart for: above 1
+    /// the tube is closed somewhere, or may be between them.
     ///
     /// Between two samples density is off their chord by a [part](BETWEEN) of the second difference, up where it is negative and
     /// down where it is positive. What is known of it along rows and along columns adds up, as where two ends of penumbrae cross,
     /// and what is known of it along both diagonals, if one bends up and the other down: rows and columns show nothing of that.
+    /// Across an end that is slanted, the longest sides of triangles pass samples that are farther apart than along rows.
     #[inline(always)]
     pub(super) fn surround(&mut self, limit: f32) -> f32 {
         let [columns, rows] = self.size;
@@ -109,7 +114,7 @@ impl Tube {
             bounds.clear();
             bounds.resize(count + RUN, empty);
         }
-        // How much more than the limit it takes at each sample.
+        // What limit it takes at each sample.
         let bends = &mut self.balanced;
         bends.clear();
         bends.resize(count + RUN, 0.0);
@@ -130,13 +135,16 @@ impl Tube {
                 let down = above[0] + below[2] - twice;
                 let up = above[2] + below[0] - twice;
                 let saddle = larger(smaller(larger(down, up), -smaller(down, up)), 0.0);
-                let low = BETWEEN * (smaller(along, 0.0) + smaller(across, 0.0) - saddle);
-                let high = BETWEEN * (larger(along, 0.0) + larger(across, 0.0) + saddle);
+                let low = smaller(along, 0.0) + smaller(across, 0.0) - saddle;
+                let high = larger(along, 0.0) + larger(across, 0.0) + saddle;
+                let hidden = HIDDEN * BETWEEN * larger(high, -low);
+                let low = BETWEEN * smaller(low, smaller(down, up));
+                let high = BETWEEN * larger(high, larger(down, up));
                 *least = here[1] - low - limit;
                 *most = here[1] - high + limit;
                 // What vertices may have is from 0 to 1.
                 let outer = larger(high - here[1], here[1] - 1.0 - low);
-                *bend = larger(outer, 0.5 * (high - low));
+                *bend = larger(larger(outer, hidden), 0.5 * (high - low));
             }
         }
         let mut worst = [0.0; RUN];
@@ -255,25 +263,17 @@ impl Tube {
                 for lane in 0..RUN {
                     let along = done + NUMBERS[lane];
                     let density = first + growth * along;
-                    let excess = (density - most[lane]).max(least[lane] - density);
+                    let excess = larger(density - most[lane], least[lane] - density);
                     let within = if along <= length {
                         excess
                     } else {
                         f32::NEG_INFINITY
                     };
-                    worst[lane] = if within > worst[lane] {
-                        within
-                    } else {
-                        worst[lane]
-                    };
+                    worst[lane] = larger(worst[lane], within);
                 }
             }
         }
-        let mut most = f32::NEG_INFINITY;
-        for excess in worst {
-            most = most.max(excess);
-        }
-        most
+        worst.into_iter().fold(f32::NEG_INFINITY, larger)
     }
 }
 
