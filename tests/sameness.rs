@@ -22,7 +22,7 @@ const GOLDEN: [(&str, u64); 11] = [
     ("points", 0xed85_f785_6936_3e8b),
     ("dithered paint", 0x60f8_2288_3fc0_c10d),
     ("masks", 0xfad7_7c0a_a8c7_f732),
-    ("meshes", 0xdce9_9501_2da0_092e),
+    ("meshes", 0x4742_7752_35bf_718e),
     ("pictures", 0x59d3_8cc5_feba_a570),
     ("svg", 0x608a_e391_8ec0_a7f2),
 ];
