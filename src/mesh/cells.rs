@@ -23,10 +23,6 @@ const SIDE: f64 = 0.75;
 /// The most halvings: more than `f32` has digits for places.
 const MOST_DEPTH: u32 = 30;
 
-/// How many cells are kept at hand: so many a side.
-const RECENT: usize = (RECENT_SIDE * RECENT_SIDE) as usize;
-const RECENT_SIDE: i64 = 8;
-
 pub(super) struct Cells {
     level: Level,
     radius: f64,
@@ -39,8 +35,6 @@ pub(super) struct Cells {
     cells: Vec<Cell>,
     /// Where the others are, by depth and place.
     places: HashMap<(u32, [i64; 2]), usize>,
-    /// The smallest cells that were asked for last, by the last digits of their places: most questions are about few of them.
-    recent: [Option<([i64; 2], usize)>; RECENT],
     spare: Vec<Edge>,
     /// The points that are asked for, each with its cell and its number.
     asked: Vec<(usize, usize)>,
@@ -88,7 +82,6 @@ impl Cells {
                 ..Cell::default()
             }],
             places: HashMap::new(),
-            recent: [None; RECENT],
             spare: Vec::new(),
             asked: Vec::new(),
         };
@@ -119,7 +112,7 @@ impl Cells {
             let place = self.place(point);
             let cell = match last {
                 Some((same, cell)) if same == place => cell,
-                _ => self.smallest(place),
+                _ => self.cell(self.depth, place),
             };
             last = Some((place, cell));
             asked.push((cell, number));
@@ -149,20 +142,6 @@ impl Cells {
         let count = (1_u64 << self.depth) as f64;
         let place = ((point - self.min) * (count / self.side)).floor();
         [place.x as i64, place.y as i64]
-    }
-
-    /// The number of one of the smallest cells.
-    fn smallest(&mut self, place: [i64; 2]) -> usize {
-        let [x, y] = place.map(|at| at.rem_euclid(RECENT_SIDE) as usize);
-        let slot = y * RECENT_SIDE as usize + x;
-        match self.recent[slot] {
-            Some((same, cell)) if same == place => cell,
-            _ => {
-                let cell = self.cell(self.depth, place);
-                self.recent[slot] = Some((place, cell));
-                cell
-            }
-        }
     }
 
     /// The number of a cell.
