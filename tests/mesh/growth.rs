@@ -42,6 +42,16 @@ fn bells(side: u16) -> Vec<Shape> {
     (0..side * side).map(moved).collect()
 }
 
+/// Rows of squares, as many in each, of all shapes the one with the most triangles before there are too many samples to halve.
+fn squares(side: u16) -> Vec<Shape> {
+    let place = |i: u16| [i % side, i / side].map(|i| 2.0 * f32::from(i));
+    let square = |i| {
+        let [x, y] = place(i);
+        Shape::rect(x, y, 1.0, 1.0).unwrap()
+    };
+    (0..side * side).map(square).collect()
+}
+
 /// A mesh as it was made in the least time.
 struct Timed {
     triangles: f64,
@@ -111,12 +121,13 @@ fn growth(
 }
 
 /// All shapes; the most triangles of refined meshes and of halved ones.
-fn growth_of_all(quick: bool, tolerances: &[f32]) -> [f64; 2] {
+fn growth_of_all(quick: bool) -> [f64; 2] {
     let mut most = [0.0_f64; 2];
-    for &tolerance in tolerances {
+    for tolerance in [0.5, 2.0, 8.0] {
         let combs = [0.4, 2.0].map(|radius| growth("comb", comb, radius, tolerance, quick));
         let bells = [1.0, 6.0].map(|radius| growth("bells", bells, radius, tolerance, quick));
-        for counts in combs.into_iter().chain(bells) {
+        let squares = [growth("squares", squares, 1.0, tolerance, quick)];
+        for counts in combs.into_iter().chain(bells).chain(squares) {
             most = [0, 1].map(|kind: usize| most[kind].max(counts[kind]));
         }
     }
@@ -127,14 +138,13 @@ fn growth_of_all(quick: bool, tolerances: &[f32]) -> [f64; 2] {
 #[test]
 #[ignore = "an hour, and it times"]
 fn time_of_meshes_of_few_triangles_grows_as_n_log_n() {
-    let [refined, _] = growth_of_all(false, &[0.5, 2.0, 8.0]);
+    let [refined, _] = growth_of_all(false);
     assert!(refined >= LAST, "{refined}");
 }
 
 #[test]
 #[ignore = "minutes, and it times"]
 fn time_of_quick_meshes_grows_as_n_log_n() {
-    // At one level most triangles are halved before there are too many samples.
-    let [_, halved] = growth_of_all(true, &[0.5, 1.0, 2.0, 8.0]);
+    let [_, halved] = growth_of_all(true);
     assert!(halved >= LAST, "{halved}");
 }
