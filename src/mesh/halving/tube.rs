@@ -11,10 +11,6 @@ const BETWEEN: f32 = 0.26;
 /// Densities so near to 0 or 1 are that: a thousandth of a level.
 const NOISE: f32 = 4e-6;
 
-/// How much of the largest such part may be anywhere, hidden from the samples beside it: where two ends of penumbrae nearly coincide,
-/// density goes with the power 0.5 of the distance.
-const HIDDEN: f32 = 0.75;
-
 /// From how many samples away bends are measured: about as far as triangles reach.
 const BEND: usize = 3;
 
@@ -90,14 +86,14 @@ impl Tube {
     }
 
     /// Lays the tube about the samples, and gives how much density bends between them over what they may be apart for: above 1
-    /// the tube is closed somewhere, or may be between them.
+    /// the tube is closed somewhere, or the part `hidden` of some bend is larger than the limit.
     ///
     /// Between two samples density is off their chord by a [part](BETWEEN) of the second difference, up where it is negative and
     /// down where it is positive. What is known of it along rows and along columns adds up, as where two ends of penumbrae cross,
     /// and what is known of it along both diagonals, if one bends up and the other down: rows and columns show nothing of that.
     /// Across an end that is slanted, the longest sides of triangles pass samples that are farther apart than along rows.
     #[inline(always)]
-    pub(super) fn surround(&mut self, limit: f32) -> f32 {
+    pub(super) fn surround(&mut self, limit: f32, hidden: f32) -> f32 {
         let [columns, rows] = self.size;
         let count = columns * rows;
         self.limit = limit;
@@ -137,14 +133,14 @@ impl Tube {
                 let saddle = larger(smaller(larger(down, up), -smaller(down, up)), 0.0);
                 let low = smaller(along, 0.0) + smaller(across, 0.0) - saddle;
                 let high = larger(along, 0.0) + larger(across, 0.0) + saddle;
-                let hidden = HIDDEN * BETWEEN * larger(high, -low);
+                let seen = hidden * BETWEEN * larger(high, -low);
                 let low = BETWEEN * smaller(low, smaller(down, up));
                 let high = BETWEEN * larger(high, larger(down, up));
                 *least = here[1] - low - limit;
                 *most = here[1] - high + limit;
                 // What vertices may have is from 0 to 1.
                 let outer = larger(high - here[1], here[1] - 1.0 - low);
-                *bend = larger(larger(outer, hidden), 0.5 * (high - low));
+                *bend = larger(larger(outer, seen), 0.5 * (high - low));
             }
         }
         let mut worst = [0.0; RUN];
