@@ -15,14 +15,14 @@ use tiny_skia::Pixmap;
 /// The hash of each group.
 const GOLDEN: [(&str, u64); 11] = [
     ("exact", 0xf8b0_4e1a_d8ba_d546),
-    ("auto", 0x0bf4_3abf_91f2_8b73),
-    ("direct", 0x7a9f_2792_77e1_0a71),
-    ("grid", 0x436f_046f_ebb1_56b0),
-    ("nine-patch", 0xc37e_8253_1e52_81ea),
+    ("auto", 0xf11e_fde3_0864_a970),
+    ("direct", 0x64fb_db51_82a5_3eca),
+    ("grid", 0xfd74_eb94_f060_eda3),
+    ("nine-patch", 0x1c6b_e769_a391_8825),
     ("points", 0xed85_f785_6936_3e8b),
-    ("dithered paint", 0x2d2e_3c57_51e6_a393),
+    ("dithered paint", 0x3de2_5923_5c18_f894),
     ("masks", 0xfad7_7c0a_a8c7_f732),
-    ("meshes", 0xdce9_9501_2da0_092e),
+    ("meshes", 0x4742_7752_35bf_718e),
     ("pictures", 0x93ca_de08_ac7e_1dff),
     ("svg", 0x608a_e391_8ec0_a7f2),
 ];

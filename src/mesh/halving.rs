@@ -38,10 +38,17 @@ const SIDE: usize = 32;
 
 /// Samples a penumbra radius at a tolerance of one level. Fewer leave so much unknown between them that triangles become as
 /// small as they allow; more take longer for the same triangles.
-const SAMPLES: f64 = 24.0;
+const SAMPLES: f64 = 22.0;
 
-/// So many times as many are tried, one after the other.
-const FINER: [f64; 3] = [1.0, 1.5, 2.25];
+/// How often a lattice is laid: one that shows too little of what lies between its samples tells how much finer the next has to be,
+/// so many times at least.
+const LATTICES: u32 = 4;
+const FINER: f64 = 1.05;
+
+/// How many times as many samples a penumbra radius are tried at most, and how many times as many from try to try where tips
+/// are hidden.
+const FINEST: f64 = 4.0;
+const FINER_FOR_TIPS: f64 = 1.25;
 
 /// The fewest at large tolerances.
 const FEWEST: f64 = 18.0;
@@ -67,6 +74,10 @@ const TIP: f64 = 1.5;
 
 /// The part of the tolerance that samples may be off.
 const SAMPLE_SHARE: f64 = 0.05;
+
+/// How much of the largest bend between samples may be elsewhere as well, where samples show less of it, at a tolerance of one level:
+/// where two ends of penumbrae nearly coincide, density goes with the power 0.5 of the distance. Finer tolerances see more of that.
+const HIDDEN: f64 = 0.75;
 
 /// The part of what is left of it that a triangle may be off at samples, and as far as they tell between them.
 const SAMPLED: f64 = 0.92;
@@ -174,15 +185,18 @@ pub(super) fn mesh(
     let mut kept = core::mem::take(&mut scratch.halving);
     let mut edges = scratch.take();
     push_edges(shadow, levels, &mut edges);
-    let mut found = Ok(None);
-    for finer in FINER {
+    let (mut finer, mut found) = (1.0, Ok(None));
+    for _ in 0..LATTICES {
         let lattice = kept.lay(&edges, shadow.radius(), finer * samples(levels));
-        if let Some(lattice) = lattice {
-            found = kept.mesh(shadow, options, &lattice, scratch, sink);
-        }
-        if lattice.is_none() || !matches!(found, Ok(None)) {
+        let Some(lattice) = lattice.filter(|_| finer <= FINEST) else {
+            break;
+        };
+        let times = kept.sample(shadow, levels, &lattice, scratch);
+        if times <= 1.0 {
+            found = kept.give(options, &lattice, scratch, sink);
             break;
         }
+        finer *= times.max(FINER);
     }
     scratch.give(edges);
     scratch.halving = kept;
@@ -220,29 +234,35 @@ impl HalvingScratch {
         (lattice.count() <= MOST).then_some(lattice)
     }
 
-    /// Gives a sink the triangles between samples, if these are near enough to one another.
-    fn mesh(
+    /// Takes samples. Gives so many times as many as would be near enough to one another: no more than 1 if they are.
+    fn sample(
         &mut self,
         shadow: &Shadow,
-        options: &MeshOptions,
+        levels: f64,
         lattice: &Lattice,
         scratch: &mut Scratch,
-        sink: &mut impl MeshSink,
-    ) -> Result<Option<MeshQuality>> {
-        let (levels, radius) = (options.tolerance.as_levels(), shadow.radius());
+    ) -> f64 {
+        let radius = shadow.radius();
         let end = lattice.place(lattice.size) + self.folds.offset(lattice.size, [true; 2]);
         let far = lattice.corner.abs().max(end.abs());
         // Density changes by at most 2 / π over the radius.
         let rounding = 255.0 * far.max_element() * f64::from(f32::EPSILON) * FRAC_2_PI / radius;
         if rounding > ROUNDING_SHARE * levels {
-            return Ok(None);
+            return f64::INFINITY;
         }
         let unsure = SAMPLE_SHARE * levels + direct::ROUNDING + rounding;
         let limit = SAMPLED * (levels - unsure) / 255.0;
         tips::find(&self.folded, radius, &mut self.tips);
-        let height = |tip: &Tip| tip.height(lattice.pitch, radius);
-        if self.tips.iter().any(|tip| height(tip) > limit) {
-            return Ok(None);
+        let hides = |finer: f64| {
+            let mut tips = self.tips.iter();
+            tips.any(|tip| tip.height(lattice.pitch / finer, radius) > limit)
+        };
+        let mut finer = 1.0;
+        while hides(finer) && finer <= FINEST {
+            finer *= FINER_FOR_TIPS;
+        }
+        if finer > 1.0 {
+            return finer;
         }
         let limit = limit as f32;
         let grid = lattice.grid();
@@ -256,18 +276,36 @@ impl HalvingScratch {
         dispatch!(level, simd => {
             direct::fill(simd, folded, radius, &grid, &all, scratch, &mut samples);
         });
-        let Self { tube, halves, .. } = self;
-        let fine = dispatch!(level, simd => simd.vectorize(
+        let hidden = (HIDDEN / levels).clamp(HIDDEN, 1.0) as f32;
+        let tube = &mut self.tube;
+        let bend = dispatch!(level, simd => simd.vectorize(
             #[inline(always)]
-            || tube.surround(limit),
+            || tube.surround(limit, hidden),
         ));
-        if !fine {
-            return Ok(None);
-        }
         for tip in &self.tips {
             let place = (tip.center - lattice.corner) / lattice.pitch;
-            tube.narrow(place, tip.miss / lattice.pitch + TIP, height(tip) as f32);
+            let height = tip.height(lattice.pitch, radius) as f32;
+            tube.narrow(place, tip.miss / lattice.pitch + TIP, height);
         }
+        // At the penumbra's ends, where it bends most, density goes with the power 1.5.
+        let times = libm::cbrt(f64::from(bend * bend));
+        if times > 1.0 || tube.is_open() {
+            times
+        } else {
+            FINER
+        }
+    }
+
+    /// Gives a sink the triangles between samples.
+    fn give(
+        &mut self,
+        options: &MeshOptions,
+        lattice: &Lattice,
+        scratch: &Scratch,
+        sink: &mut impl MeshSink,
+    ) -> Result<Option<MeshQuality>> {
+        let (level, levels) = (scratch.level(), options.tolerance.as_levels());
+        let Self { tube, halves, .. } = self;
         dispatch!(level, simd => simd.vectorize(
             #[inline(always)]
             || halves.choose(tube),
@@ -300,6 +338,10 @@ impl HalvingScratch {
     fn unfold(&mut self, lattice: &Lattice) {
         let Self { folds, corners, .. } = self;
         corners.clear();
+        if !folds.any() {
+            corners.extend(&self.halves.triangles);
+            return;
+        }
         for triangle in &self.halves.triangles {
             let samples = triangle.map(|sample| lattice.of_key(sample).0);
             let [a, b, c] = samples;
@@ -309,9 +351,6 @@ impl HalvingScratch {
                 [0, 1].map(|axis: usize| through[axis] && sample[axis] < end[axis])
             };
             corners.push(samples.map(|sample| lattice.key(sample, sides(sample))));
-            if !folds.any() {
-                continue;
-            }
             for [from, to] in [[a, b], [b, c], [c, a]] {
                 for axis in 0..2 {
                     // Of the triangles beside a cut, those before it.

@@ -85,14 +85,15 @@ impl Tube {
         self.balanced[y * self.size[0] + x]
     }
 
-    /// Lays the tube about the samples, and says whether they are within it: where density bends so much between them that
-    /// they are not, they are too far apart.
+    /// Lays the tube about the samples, and gives how much density bends between them over what they may be apart for: above 1
+    /// the tube is closed somewhere, or the part `hidden` of some bend is larger than the limit.
     ///
     /// Between two samples density is off their chord by a [part](BETWEEN) of the second difference, up where it is negative and
     /// down where it is positive. What is known of it along rows and along columns adds up, as where two ends of penumbrae cross,
     /// and what is known of it along both diagonals, if one bends up and the other down: rows and columns show nothing of that.
+    /// Across an end that is slanted, the longest sides of triangles pass samples that are farther apart than along rows.
     #[inline(always)]
-    pub(super) fn surround(&mut self, limit: f32) -> bool {
+    pub(super) fn surround(&mut self, limit: f32, hidden: f32) -> f32 {
         let [columns, rows] = self.size;
         let count = columns * rows;
         self.limit = limit;
@@ -109,29 +110,48 @@ impl Tube {
             bounds.clear();
             bounds.resize(count + RUN, empty);
         }
-        let mut bend = 0.0_f32;
+        // What limit it takes at each sample.
+        let bends = &mut self.balanced;
+        bends.clear();
+        bends.resize(count + RUN, 0.0);
         for row in 1..rows - 1 {
             let start = row * columns;
             let [above, here, below] = [start - columns, start, start + columns]
-                .map(|start| &self.densities[start..start + columns]);
-            let least = &mut self.least[start..start + columns];
-            let most = &mut self.most[start..start + columns];
-            for i in 1..columns - 1 {
-                let twice = 2.0 * here[i];
-                let along = here[i - 1] + here[i + 1] - twice;
-                let across = above[i] + below[i] - twice;
-                let down = above[i - 1] + below[i + 1] - twice;
-                let up = above[i + 1] + below[i - 1] - twice;
-                let saddle = down.max(up).min(-down.min(up)).max(0.0);
-                let low = along.min(0.0) + across.min(0.0) - saddle;
-                let high = along.max(0.0) + across.max(0.0) + saddle;
-                least[i] = here[i] - BETWEEN * low - limit;
-                most[i] = here[i] - BETWEEN * high + limit;
-                bend = bend.max(high).max(-low);
+                .map(|start| self.densities[start..start + columns].windows(3));
+            let inner = start + 1..start + columns - 1;
+            let bounds = self.least[inner.clone()]
+                .iter_mut()
+                .zip(&mut self.most[inner.clone()]);
+            let samples = above.zip(here).zip(below);
+            let found = bounds.zip(&mut bends[inner]);
+            for (((above, here), below), ((least, most), bend)) in samples.zip(found) {
+                let twice = 2.0 * here[1];
+                let along = here[0] + here[2] - twice;
+                let across = above[1] + below[1] - twice;
+                let down = above[0] + below[2] - twice;
+                let up = above[2] + below[0] - twice;
+                let saddle = larger(smaller(larger(down, up), -smaller(down, up)), 0.0);
+                let low = smaller(along, 0.0) + smaller(across, 0.0) - saddle;
+                let high = larger(along, 0.0) + larger(across, 0.0) + saddle;
+                let seen = hidden * BETWEEN * larger(high, -low);
+                let low = BETWEEN * smaller(low, smaller(down, up));
+                let high = BETWEEN * larger(high, larger(down, up));
+                *least = here[1] - low - limit;
+                *most = here[1] - high + limit;
+                // What vertices may have is from 0 to 1.
+                let outer = larger(high - here[1], here[1] - 1.0 - low);
+                *bend = larger(larger(outer, seen), 0.5 * (high - low));
             }
         }
+        let mut worst = [0.0; RUN];
+        for bends in bends.as_chunks::<RUN>().0 {
+            for (worst, bend) in worst.iter_mut().zip(bends) {
+                *worst = larger(*worst, *bend);
+            }
+        }
+        let bend = worst.into_iter().fold(0.0, larger);
         self.balance();
-        BETWEEN * bend <= limit
+        bend / limit
     }
 
     /// Narrows the tube about a place (in samples) to what is left if density may be off by so much between them.
@@ -157,21 +177,38 @@ impl Tube {
         let [columns, rows] = self.size;
         self.balanced.clear();
         self.balanced.extend_from_slice(&self.densities);
-        let most = self.limit * BALANCED;
+        let by = self.limit * BALANCED;
         for row in BEND..rows - BEND {
             let start = row * columns;
-            let [above, here, below] = [start - BEND * columns, start, start + BEND * columns]
-                .map(|start| &self.densities[start..start + columns]);
-            let balanced = &mut self.balanced[start..start + columns];
-            let least = &self.least[start..start + columns];
-            let highest = &self.most[start..start + columns];
-            for i in BEND..columns - BEND {
-                let around = here[i - BEND] + here[i + BEND] + above[i] + below[i];
-                let bend = (around - 4.0 * here[i]) / 8.0;
-                let density = here[i] - bend.max(-most).min(most);
-                balanced[i] = density.clamp(0.0, 1.0).max(least[i]).min(highest[i]);
+            let [above, below] = [start - BEND * columns, start + BEND * columns]
+                .map(|start| &self.densities[start + BEND..start + columns - BEND]);
+            let here = self.densities[start..start + columns].windows(2 * BEND + 1);
+            let inner = start + BEND..start + columns - BEND;
+            let bounds = self.least[inner.clone()]
+                .iter()
+                .zip(&self.most[inner.clone()]);
+            let around = above.iter().zip(below).zip(here);
+            let balanced = self.balanced[inner].iter_mut();
+            for ((balanced, ((above, below), here)), (least, most)) in
+                balanced.zip(around).zip(bounds)
+            {
+                let around = here[0] + here[2 * BEND] + above + below;
+                let bend = (around - 4.0 * here[BEND]) / 8.0;
+                let density = here[BEND] - smaller(larger(bend, -by), by);
+                let density = smaller(larger(density, 0.0), 1.0);
+                *balanced = smaller(larger(density, *least), *most);
             }
         }
+    }
+
+    /// Whether what vertices have is within it.
+    pub(super) fn is_open(&self) -> bool {
+        let mut open = true;
+        let bounds = self.least.iter().zip(&self.most);
+        for (balanced, (least, most)) in self.balanced.iter().zip(bounds) {
+            open &= (least <= balanced) & (balanced <= most);
+        }
+        open
     }
 
     /// How far a density is outside of the tube at a sample; less than 0 where it is within.
@@ -222,24 +259,28 @@ impl Tube {
                 for lane in 0..RUN {
                     let along = done + NUMBERS[lane];
                     let density = first + growth * along;
-                    let excess = (density - most[lane]).max(least[lane] - density);
+                    let excess = larger(density - most[lane], least[lane] - density);
                     let within = if along <= length {
                         excess
                     } else {
                         f32::NEG_INFINITY
                     };
-                    worst[lane] = if within > worst[lane] {
-                        within
-                    } else {
-                        worst[lane]
-                    };
+                    worst[lane] = larger(worst[lane], within);
                 }
             }
         }
-        let mut most = f32::NEG_INFINITY;
-        for excess in worst {
-            most = most.max(excess);
-        }
-        most
+        worst.into_iter().fold(f32::NEG_INFINITY, larger)
     }
+}
+
+/// The larger of two numbers: without a rule for what is none, which would take as long again.
+#[inline(always)]
+fn larger(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+/// The smaller of two numbers.
+#[inline(always)]
+fn smaller(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
 }
