@@ -24,7 +24,7 @@ struct Part {
 }
 
 /// How far the ends of chords may be moved to whole cells, in levels: by so much the profile of an upright edge is another at most.
-const MOVED: f64 = 0.15;
+const MOVED: f64 = 0.1;
 
 /// A disc on rows of sums.
 #[derive(Debug, Default)]
