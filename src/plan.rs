@@ -176,7 +176,7 @@ struct Work {
 impl Work {
     fn of(shadow: &Shadow, per_unit: f64) -> Self {
         let mut census = shadow.census();
-        // Arcs on curves are as long as the third of their deviation's power says: fitted to what is drawn.
+        // How far an arc is from its curve grows with the third power of its length.
         let radius = shadow.radius().max(census.curve_length * 1e-4);
         let arcs = ARCS * libm::cbrt(census.curve_length / census.curves.max(1.0) / radius);
         census.arcs += census.curves * arcs.max(1.0);

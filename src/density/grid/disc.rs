@@ -7,11 +7,13 @@ use fearless_simd::{Simd, SimdBase, f32x16};
 use super::chords::{Chord, Chords};
 use super::strips::BLOCK;
 
-/// How many cells from a pixel's own a chord's ends are.
+/// How many cells from a pixel's own a chord's ends are, and how many whole ones those of it and of all farther from the disc's middle
+/// are at most.
 #[derive(Debug, Clone, Copy)]
 struct Reach {
     whole: usize,
     rest: f32,
+    farthest: usize,
 }
 
 /// A chord that ends between cells, where its row of sums begins, and the weights of the nearer cells and of the farther ones.
@@ -55,18 +57,21 @@ impl Disc {
             let moved = (reach - whole) * both;
             let reach = if moved.abs() <= most {
                 left = moved;
-                Reach {
-                    whole: whole as usize,
-                    rest: 0.0,
-                }
+                (whole as usize, 0.0)
             } else {
                 left = 0.0;
-                Reach {
-                    whole: reach as usize,
-                    rest: reach.fract() as f32,
-                }
+                (reach as usize, reach.fract() as f32)
             };
-            self.reaches.extend(likes.iter().map(|_| reach));
+            self.reaches.extend(likes.iter().map(|_| Reach {
+                whole: reach.0,
+                rest: reach.1,
+                farthest: 0,
+            }));
+        }
+        let mut farthest = 0;
+        for reach in self.reaches.iter_mut().rev() {
+            farthest = farthest.max(reach.whole);
+            reach.farthest = farthest;
         }
         // In the order of the pixels' own sums, so that the umbra's density is 1.
         self.total = 0.0;
@@ -84,12 +89,12 @@ impl Disc {
 
     /// The farthest cell from a pixel's own that its disc reaches.
     pub(super) fn reach(&self) -> usize {
-        self.reaches.first().map_or(0, |reach| reach.whole + 1)
+        self.reaches.first().map_or(0, |reach| reach.farthest + 1)
     }
 
-    /// Chords and the farthest cells from a pixel's own that they reach.
+    /// Chords and the farthest cells from a pixel's own that they and those behind them reach.
     pub(super) fn chords(&self) -> impl Iterator<Item = (&Chord, usize)> {
-        let reaches = self.reaches.iter().map(|reach| reach.whole);
+        let reaches = self.reaches.iter().map(|reach| reach.farthest);
         self.chords.all.iter().zip(reaches)
     }
 
@@ -97,7 +102,7 @@ impl Disc {
     pub(super) fn lay(&mut self, place: impl Fn(&Chord) -> usize) {
         self.wholes.clear();
         self.parts.clear();
-        for (chord, &Reach { whole, rest }) in self.chords.all.iter().zip(&self.reaches) {
+        for (chord, &Reach { whole, rest, .. }) in self.chords.all.iter().zip(&self.reaches) {
             let row = place(chord);
             if rest == 0.0 {
                 self.wholes.push((row, whole));

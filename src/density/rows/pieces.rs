@@ -48,6 +48,21 @@ pub(super) enum Form {
     },
 }
 
+impl Form {
+    /// An arc's centre and radius, its turn and its side.
+    fn circle(&self) -> Option<(DVec2, f64, [f64; 2])> {
+        match *self {
+            Self::Line { .. } => None,
+            Self::Arc {
+                center,
+                radius,
+                turn,
+                side,
+            } => Some((center, radius, [turn, side])),
+        }
+    }
+}
+
 /// Arcs of larger radius, in the window's unit, are cut into lines: single precision would not tell them from these.
 const LARGEST: f64 = 1024.0;
 
@@ -254,56 +269,29 @@ impl Piece {
     /// This piece and the one after it as one, where they are of one circle and go on the same way.
     fn joined(&self, next: &Self) -> Option<Self> {
         const SAME: f64 = 1e-6;
-        let (
-            Form::Arc {
-                center,
-                radius,
-                turn,
-                side,
-            },
-            Form::Arc {
-                center: c,
-                radius: r,
-                turn: t,
-                side: s,
-            },
-        ) = (self.form, next.form)
-        else {
-            return None;
-        };
+        let ((center, radius, way), (c, r, w)) = self.form.circle().zip(next.form.circle())?;
         let same = self.to == next.from
-            && (turn, side) == (t, s)
+            && way == w
             && center.distance(c) < SAME
             && (radius - r).abs() < SAME
             && radius >= SQRT_2;
         let (low, high) = (self.low.min(next.low), self.high.max(next.high));
-        same.then(|| Self {
+        let joined = Self {
             low,
             high,
             to: next.to,
             chain: [low, high],
             ..*self
-        })
+        };
+        same.then_some(joined)
     }
 
     /// Whether another piece goes on from this one so nearly as it would itself that what pixels average over hardly shows it.
     fn goes_on(&self, next: &Self, wide: &Wide) -> bool {
         // By so many levels each a bend of the direction and of the curvature may show.
         const SHOWN: f64 = 0.07;
-        let (
-            Form::Arc {
-                center,
-                radius,
-                turn,
-                side,
-            },
-            Form::Arc {
-                center: c,
-                radius: r,
-                turn: t,
-                side: s,
-            },
-        ) = (self.form, next.form)
+        let Some(((center, radius, [turn, side]), (c, r, [t, s]))) =
+            self.form.circle().zip(next.form.circle())
         else {
             return false;
         };
