@@ -896,3 +896,41 @@ fn what_does_not_fit_is_refused() {
     }
     assert!(Paint::new(Color::WHITE, 0.0).is_ok() && Paint::new(Color::WHITE, 1.0).is_ok());
 }
+
+/// Where a bar thinner than three pixels ends, what few points miss along both axes comes together.
+#[test]
+fn ends_of_thin_bars_keep_the_tolerance_of_averages() {
+    let mut scratch = Scratch::new();
+    let grid = Grid::new([0.0, 0.0], [20, 16], 1.0).unwrap();
+    let mut worst: f32 = 0.0;
+    for step in 0..34 {
+        let radius = 0.27 + 0.05 * step as f32;
+        let light = Light::directional([0.0, 0.0], radius).unwrap();
+        for (index, thin) in [0.25, 0.9, 1.2, 1.5, 2.2, 2.5, 2.65]
+            .into_iter()
+            .enumerate()
+        {
+            let phase = |times: usize| ((step * 7 + index * times) % 8) as f32 / 8.0;
+            let bar = Shape::rect(6.0 + phase(3), 6.0 + phase(5), 5.3, thin).unwrap();
+            let shadow = light.cast(&bar, 1.0, 0.0).unwrap();
+            let mut draw = |method| {
+                let options = PixelOptions {
+                    method: Some(method),
+                    ..PixelOptions::default()
+                };
+                densities(&shadow, &grid, &options, &mut scratch)
+            };
+            let (exact, direct) = (draw(Method::Exact), draw(Method::Direct));
+            for (exact, direct) in exact.iter().zip(&direct) {
+                let error = (direct - exact).abs() * 255.0;
+                // And what `exact` may be wrong by.
+                assert!(
+                    error <= AVERAGED + 0.12,
+                    "r {radius}, thickness {thin}: {error}"
+                );
+                worst = worst.max(error);
+            }
+        }
+    }
+    println!("{worst:.3} levels at most");
+}

@@ -15,15 +15,15 @@ use tiny_skia::Pixmap;
 /// The hash of each group.
 const GOLDEN: [(&str, u64); 11] = [
     ("exact", 0xf8b0_4e1a_d8ba_d546),
-    ("auto", 0x07fe_c1a5_0370_cef9),
-    ("direct", 0x64fb_db51_82a5_3eca),
-    ("grid", 0x7239_9995_5eec_57e0),
-    ("nine-patch", 0x1c6b_e769_a391_8825),
+    ("auto", 0xbebe_86a1_c7a1_94a6),
+    ("direct", 0x785a_ef7b_7a6d_28ed),
+    ("grid", 0xd1a9_d25d_379c_caf3),
+    ("nine-patch", 0xb167_ec38_b62d_4a9a),
     ("points", 0xed85_f785_6936_3e8b),
-    ("dithered paint", 0x179f_b66a_80b2_fb9c),
-    ("masks", 0xfad7_7c0a_a8c7_f732),
+    ("dithered paint", 0x1682_78f8_be90_2cd4),
+    ("masks", 0x9201_b800_bdf8_a30b),
     ("meshes", 0x4742_7752_35bf_718e),
-    ("pictures", 0x93ca_de08_ac7e_1dff),
+    ("pictures", 0x6eb1_d4f7_d73a_25bd),
     ("svg", 0x608a_e391_8ec0_a7f2),
 ];
 
