@@ -187,8 +187,10 @@ pub(super) fn mesh(
     push_edges(shadow, levels, &mut edges);
     let (mut finer, mut found) = (1.0, Ok(None));
     for _ in 0..LATTICES {
-        let lattice = kept.lay(&edges, shadow.radius(), finer * samples(levels));
-        let Some(lattice) = lattice.filter(|_| finer <= FINEST) else {
+        if finer > FINEST {
+            break;
+        }
+        let Some(lattice) = kept.lay(&edges, shadow.radius(), finer * samples(levels)) else {
             break;
         };
         let times = kept.sample(shadow, levels, &lattice, scratch);
