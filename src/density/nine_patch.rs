@@ -208,11 +208,10 @@ impl NinePatchScratch {
             for row in cell.distinct() {
                 self.compute(simd, zone, *row, lattice, blocks.clone());
             }
+            let kept = &mut self.zones[zone];
+            (kept.cell, kept.ready) = (cell.rows, blocks.clone());
         }
         let zone = &mut self.zones[zone];
-        if !is_ready {
-            (zone.cell, zone.ready) = (cell.rows, blocks.clone());
-        }
         let [a, b, c, d] = cell.rows.map(slot);
         if let [_] = cell.distinct() {
             return &zone.rows[a][part.start..];

@@ -106,6 +106,7 @@ impl<'a> SumSource<'a> {
         }
     }
 
+    /// Computes a row of the lattice, below the last.
     #[inline(always)]
     pub(super) fn weave<S: Simd>(&mut self, simd: S, row: i64, woven: &mut Row) {
         // Groups of strips from the middle of a disc to its end.
