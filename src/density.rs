@@ -127,8 +127,8 @@ fn draw_part(
         Method::NinePatch if let Some(rounded) = nine_patch::suited(shadow, per_unit) => {
             let radius = shadow.radius() * per_unit;
             if rounded.circle().is_some() && averaged_side(radius) == 0.0 {
-                let outline = shadow.exact_outline();
-                dispatch!(level, simd => circle::fill(simd, outline, radius, on, options, scratch, sink));
+                let bounds = (rounded.min, rounded.max);
+                dispatch!(level, simd => circle::fill(simd, bounds, radius, on, options, scratch, sink));
             } else {
                 dispatch!(level, simd => {
                     nine_patch::fill(simd, &rounded, radius, on, options, scratch, sink);

@@ -9,7 +9,6 @@ use self::inside::sort_by_row;
 use crate::density::rounded::Rounded;
 use crate::grid::Grid;
 use crate::light::Projection;
-use crate::outline::Fineness;
 use crate::path::Contour;
 use crate::scratch::Scratch;
 use crate::shadow::Shadow;
@@ -217,9 +216,9 @@ impl Hidden {
         let (scale, corner) = (self.grid.pixels_per_unit(), self.grid.corner());
         let mut edges = scratch.take();
         if shape.cover == Cover::Simple {
-            let fineness = Fineness::new(CURVES, 0.0, 1.0 / scale);
+            let (flatness, vertices) = (inside::FLATNESS / scale, &mut scratch.vertices);
             for contour in &shape.contours {
-                contour.chords(&fineness, &mut edges);
+                contour.near(flatness, vertices, &mut edges);
             }
         } else {
             let cover = Shadow::project(&[shape], &Projection::in_place(0.0));

@@ -7,6 +7,7 @@ mod arcs;
 mod chords;
 mod clip;
 mod fit;
+mod near;
 mod resolve;
 
 use core::f64::consts::{PI, TAU};

@@ -4,9 +4,9 @@ use core::num::NonZeroUsize;
 use core::ops::Range;
 
 use fearless_simd::Level;
+use glam::DVec2;
 
 use crate::compose::Fusion;
-use crate::density::circle::Profile;
 use crate::density::grid::GridScratch;
 use crate::density::nine_patch::NinePatchScratch;
 use crate::density::rows::Rows;
@@ -26,10 +26,13 @@ pub struct Scratch {
     level: Level,
     /// Lists of edges that are not in use.
     edges: Vec<Vec<Edge>>,
+    /// Vertices of one curve.
+    pub(crate) vertices: Vec<DVec2>,
     pub(crate) rows: Rows,
     pub(crate) nine_patch: NinePatchScratch,
     pub(crate) grid: GridScratch,
-    pub(crate) circle: Profile,
+    /// The densities of some pixels of a row.
+    pub(crate) values: Vec<f32>,
     pub(crate) inside: Inside,
     pub(crate) fusion: Fusion,
     pub(crate) halving: HalvingScratch,
@@ -56,10 +59,11 @@ impl Scratch {
         Self {
             level,
             edges: Vec::new(),
+            vertices: Vec::new(),
             rows: Rows::default(),
             nine_patch: NinePatchScratch::default(),
             grid: GridScratch::default(),
-            circle: Profile::default(),
+            values: Vec::new(),
             inside: Inside::default(),
             fusion: Fusion::default(),
             halving: HalvingScratch::default(),

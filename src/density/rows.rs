@@ -8,7 +8,7 @@
 mod kernels;
 mod pieces;
 
-pub(crate) use kernels::{Wide, half_disc};
+pub(crate) use kernels::{RowCircle, Wide, circle, half_disc};
 pub(crate) use pieces::each_line;
 
 use core::ops::Range;
@@ -118,6 +118,8 @@ enum RowForm {
     Line(RowLine),
     /// An arc that passes the disc's whole height.
     ThroughArc(RowArc),
+    /// An arc that runs inside between any two of its points that are inside.
+    LongArc(RowArc),
     Arc(RowArc),
     Cut(RowCut),
     /// A line or an arc that passes all that a pixel averages over.
@@ -473,6 +475,10 @@ impl Stroke<'_> {
             RowForm::ThroughArc(arc) => add!(
                 #[inline(always)]
                 |columns| kernels::through_arc(simd, columns, &arc)
+            ),
+            RowForm::LongArc(arc) => add!(
+                #[inline(always)]
+                |columns| kernels::long_arc(simd, columns, &arc)
             ),
             RowForm::Arc(arc) => add!(
                 #[inline(always)]

@@ -5,7 +5,7 @@
 //! +sqrt(1 - y²). No angle is needed, and far pieces are differences of one function of their ends' y, which cancel along
 //! a closed loop. All values are divided by π, so that they add up to density.
 
-use fearless_simd::{Select, Simd, SimdBase, SimdFloat, f32x16};
+use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, f32x16, mask32x16};
 
 const FRAC_1_PI: f32 = core::f32::consts::FRAC_1_PI;
 
@@ -226,19 +226,28 @@ pub(super) fn line<S: Simd>(simd: S, columns: f32x16<S>, line: &RowLine) -> f32x
     let first = (-half_chord).max(start).min(end);
     let last = half_chord.max(start).min(end);
     let met = first.simd_lt(last);
-
     let foot_x = distance * along_y;
-    let foot_y = -(distance * along_x);
+    let beside = one.copysign(foot_x + first * along_x) * (line.halves[1] - line.halves[0]);
+    if !met.any_true() {
+        return beside;
+    }
+
     let inside =
         (last - first) * (foot_x + (first + last) * (0.5 * along_x)) * (along_y * FRAC_1_PI);
+    let foot_y = -(distance * along_x);
     let (chord_x, chord_y) = (half_chord * along_x, half_chord * along_y);
-    let (enter_x, leave_x) = (foot_x - chord_x, foot_x + chord_x);
-    let before = half_disc_at(simd, enter_x, foot_y - chord_y) - line.halves[0];
-    let after = -(half_disc_at(simd, leave_x, foot_y + chord_y) - line.halves[1]);
-    let added = inside
-        + begins.select(before * one.copysign(enter_x), zero)
-        + goes_on.select(after * one.copysign(leave_x), zero);
-    let beside = one.copysign(foot_x + first * along_x) * (line.halves[1] - line.halves[0]);
+    // What lies outside, where there is some.
+    let mut added = inside;
+    if begins.any_true() {
+        let (x, y) = (foot_x - chord_x, foot_y - chord_y);
+        let before = (half_disc_at(simd, x, y) - line.halves[0]) * one.copysign(x);
+        added += begins.select(before, zero);
+    }
+    if goes_on.any_true() {
+        let (x, y) = (foot_x + chord_x, foot_y + chord_y);
+        let after = (half_disc_at(simd, x, y) - line.halves[1]) * one.copysign(x);
+        added -= goes_on.select(after, zero);
+    }
     met.select(added, beside)
 }
 
@@ -266,17 +275,16 @@ pub(super) struct RowArc {
     pub(super) segment: f32,
 }
 
-/// The area between an arc and its chord, over π, for the squared chord.
+/// The area between an arc and its chord, over π, for half of the chord and the square of that.
 #[inline(always)]
-fn segment<S: Simd>(simd: S, squared_chord: f32x16<S>, radius: f32) -> f32x16<S> {
-    let quarter = 0.25 / (radius * radius);
-    let t2 = (squared_chord * quarter).min(f32x16::splat(simd, 0.5));
+fn segment<S: Simd>(simd: S, half_chord: f32x16<S>, squared: f32x16<S>, radius: f32) -> f32x16<S> {
+    let t2 = (squared * (1.0 / (radius * radius))).min(f32x16::splat(simd, 0.5));
     let [a, b, c, d, e] = SEGMENT;
     let p = t2 * (t2 * (t2 * (t2 * e + d) + c) + b) + a;
-    squared_chord * squared_chord.sqrt() * p * (0.125 * FRAC_1_PI / radius)
+    squared * half_chord * p * (FRAC_1_PI / radius)
 }
 
-/// As [`segment`], for one number.
+/// The area between an arc and its chord, over π, for the squared chord.
 pub(super) fn segment_of(squared_chord: f32, radius: f32) -> f32 {
     let t2 = (squared_chord * (0.25 / (radius * radius))).min(0.5);
     let [a, b, c, d, e] = SEGMENT;
@@ -284,85 +292,251 @@ pub(super) fn segment_of(squared_chord: f32, radius: f32) -> f32 {
     squared_chord * squared_chord.sqrt() * p * (0.125 * FRAC_1_PI / radius)
 }
 
+/// Where the arc's circle crosses the disc's: at one base and as far from it on both sides.
+struct Crossings<S: Simd> {
+    base: [f32x16<S>; 2],
+    aside: [f32x16<S>; 2],
+    /// The squared distance of the two centres, 1 over it, and the squared distance of both points over it, where there are any.
+    distance: f32x16<S>,
+    inverse: f32x16<S>,
+    squared: f32x16<S>,
+}
+
+impl<S: Simd> Crossings<S> {
+    #[inline(always)]
+    fn find(simd: S, columns: f32x16<S>, arc: &RowArc) -> Self {
+        let center_x = arc.center.at(columns);
+        // At `toward` of the way to the arc's centre.
+        let power = arc.power(columns);
+        // Of the centre's own coordinates, so that both points lie on the disc's circle however near to each other the centres
+        // are.
+        let distance = center_x * center_x + arc.center_y * arc.center_y;
+        let inverse = f32x16::splat(simd, 1.0) / distance.max(f32x16::splat(simd, 1e-12));
+        let toward = (power + 1.0) * 0.5 * inverse;
+        let squared = inverse - toward * toward;
+        let aside = squared.max(f32x16::splat(simd, 0.0)).sqrt() * arc.turn;
+        Self {
+            base: [toward * center_x, toward * arc.center_y],
+            aside: [aside * arc.center_y, aside * center_x],
+            distance,
+            inverse,
+            squared,
+        }
+    }
+
+    /// Where the arc enters the disc.
+    #[inline(always)]
+    fn enter(&self) -> [f32x16<S>; 2] {
+        [self.base[0] - self.aside[0], self.base[1] + self.aside[1]]
+    }
+
+    /// Where the arc leaves the disc.
+    #[inline(always)]
+    fn leave(&self) -> [f32x16<S>; 2] {
+        [self.base[0] + self.aside[0], self.base[1] - self.aside[1]]
+    }
+}
+
+/// What an arc adds that runs inside from one point to another.
 #[inline(always)]
-pub(super) fn arc<S: Simd>(simd: S, columns: f32x16<S>, arc: &RowArc) -> f32x16<S> {
+fn inside<S: Simd>(simd: S, from: [f32x16<S>; 2], to: [f32x16<S>; 2], arc: &RowArc) -> f32x16<S> {
+    let (chord_x, chord_y) = (to[0] - from[0], to[1] - from[1]);
+    let squared = (chord_x * chord_x + chord_y * chord_y) * 0.25;
+    (from[0] + to[0]) * chord_y * (0.5 * FRAC_1_PI)
+        + segment(simd, squared.sqrt(), squared, arc.radius) * arc.turn
+}
+
+/// The disc's half at a crossing less that at the height of the arc's end beyond, on the side of the disc where this part is.
+#[inline(always)]
+fn beyond<S: Simd>(simd: S, [x, y]: [f32x16<S>; 2], end: f32x16<S>, half: f32x16<S>) -> f32x16<S> {
+    (half_disc_at(simd, x, y) - half) * f32x16::splat(simd, 1.0).copysign(x + end)
+}
+
+/// Whether the circles cross within the arc, where neither of its ends is inside: at the first point it enters, at the second it
+/// leaves, in this order or not.
+#[inline(always)]
+fn crosses<S: Simd>(
+    simd: S,
+    center_x: f32x16<S>,
+    crossings: &Crossings<S>,
+    [enter, leave]: [[f32x16<S>; 2]; 2],
+    arc: &RowArc,
+) -> mask32x16<S> {
     // How far beyond its ends a point may seem to lie that rounding has moved there, and the more of it the nearer the two
     // centres are: over their squared distance.
     const SLACK: f32 = 1e-5;
     const SLACK_NEAR: f32 = 1e-9;
-    // An arc so near to the disc's own circle lies on it: where they cross is a matter of rounding.
-    const SAME: f32 = 1e-4;
-    let zero = f32x16::splat(simd, 0.0);
-    let one = f32x16::splat(simd, 1.0);
+    // Order along the arc is order along y.
+    let rise = arc.rise();
+    let (enters, leaves) = (enter[1] * rise, leave[1] * rise);
+    let slack = crossings.inverse * SLACK_NEAR + SLACK;
+    let beside = center_x * arc.side - slack;
+    (enter[0] * arc.side).simd_ge(beside)
+        & (leave[0] * arc.side).simd_ge(beside)
+        & enters.min(leaves).simd_ge(-slack + arc.from[1] * rise)
+        & enters.max(leaves).simd_le(slack + arc.to[1] * rise)
+        & crossings.squared.simd_gt(f32x16::splat(simd, 0.0))
+}
 
+impl RowArc {
+    /// 1 where y rises along it, else -1.
+    #[inline(always)]
+    fn rise(&self) -> f32 {
+        if self.to[1] < self.from[1] { -1.0 } else { 1.0 }
+    }
+
+    /// The x of an end if it is as high as the disc, or 0: a crossing beside it may be at the disc's top, where rounding decides on
+    /// which side it is.
+    #[inline(always)]
+    fn seen_end<S: Simd>(&self, simd: S, end: usize, x: f32x16<S>) -> f32x16<S> {
+        let [.., width] = [self.from, self.to][end];
+        if width > 0.0 {
+            x
+        } else {
+            f32x16::splat(simd, 0.0)
+        }
+    }
+
+    #[inline(always)]
+    fn power<S: Simd>(&self, columns: f32x16<S>) -> f32x16<S> {
+        let [power, slope, curvature] = self.power;
+        columns * (columns * curvature + slope) + power
+    }
+
+    /// What it adds where all of it is inside.
+    #[inline(always)]
+    fn whole<S: Simd>(&self, from_x: f32x16<S>, to_x: f32x16<S>) -> f32x16<S> {
+        let chord_y = (self.to[1] - self.from[1]) * (0.5 * FRAC_1_PI);
+        (from_x + to_x) * chord_y + self.segment * self.turn
+    }
+
+    /// What it adds where nothing of it is inside.
+    #[inline(always)]
+    fn missed<S: Simd>(&self, simd: S, center_x: f32x16<S>) -> f32x16<S> {
+        let side = f32x16::splat(simd, 1.0).copysign(center_x + self.middle);
+        side * (self.halves[1] - self.halves[0])
+    }
+}
+
+/// An arc of so large a radius that it runs inside between any two of its points that are inside.
+#[inline(always)]
+pub(super) fn long_arc<S: Simd>(simd: S, columns: f32x16<S>, arc: &RowArc) -> f32x16<S> {
+    let zero = f32x16::splat(simd, 0.0);
+    let splat = |v: f32| f32x16::splat(simd, v);
     let center_x = arc.center.at(columns);
     let [from_x, from_y, from_width] = arc.from;
     let [to_x, to_y, to_width] = arc.to;
     let (from_x, to_x) = (center_x + from_x, center_x + to_x);
-    let from_in = from_x.abs().simd_lt(from_width);
-    let to_in = to_x.abs().simd_lt(to_width);
+    let from_in = from_x.abs().simd_lt(splat(from_width));
+    let to_in = to_x.abs().simd_lt(splat(to_width));
+    let (any_in, both_in) = (from_in | to_in, from_in & to_in);
+    if both_in.all_true() {
+        return arc.whole(from_x, to_x);
+    }
+    let crossings = Crossings::find(simd, columns, arc);
+    let (enter, leave) = (crossings.enter(), crossings.leave());
+    let rise = arc.rise();
+    let from = [from_x, splat(from_y)];
+    let to = [to_x, splat(to_y)];
+    let missed = arc.missed(simd, center_x);
+    let mut met = any_in;
+    if !any_in.all_true() {
+        let passed = !any_in
+            & crosses(simd, center_x, &crossings, [enter, leave], arc)
+            & (enter[1] * rise).simd_le(leave[1] * rise);
+        met |= passed;
+        if !met.any_true() {
+            return missed;
+        }
+        if passed.any_true() {
+            let p = select_point(from_in, from, enter);
+            let q = select_point(to_in, to, leave);
+            let before = beyond(
+                simd,
+                enter,
+                arc.seen_end(simd, 0, from_x),
+                splat(arc.halves[0]),
+            );
+            let after = beyond(
+                simd,
+                leave,
+                arc.seen_end(simd, 1, to_x),
+                splat(arc.halves[1]),
+            );
+            let outside = from_in.select(zero, before) - to_in.select(zero, after);
+            return met.select(inside(simd, p, q, arc) + outside, missed);
+        }
+    }
+    // At most one crossing, of which a disc's half need be found.
+    let crossing = select_point(from_in, leave, enter);
+    let p = select_point(from_in, from, crossing);
+    let q = select_point(to_in, to, crossing);
+    let end = from_in.select(arc.seen_end(simd, 1, to_x), arc.seen_end(simd, 0, from_x));
+    let half = from_in.select(splat(arc.halves[1]), splat(arc.halves[0]));
+    let outside = beyond(simd, crossing, end, half);
+    let outside = both_in.select(zero, from_in.select(-outside, outside));
+    met.select(inside(simd, p, q, arc) + outside, missed)
+}
 
-    // The two circles cross on both sides of the point at `toward` of the way to the arc's centre.
-    let [power, slope, curvature] = arc.power;
-    let power = columns * (columns * curvature + slope) + power;
-    // Of the centre's own coordinates, so that both points lie on the disc's circle however near to each other the centres
-    // are.
-    let distance = center_x * center_x + arc.center_y * arc.center_y;
-    let inverse = one / distance.max(f32x16::splat(simd, 1e-12));
-    let toward = (power + 1.0) * 0.5 * inverse;
-    let squared = inverse - toward * toward;
-    let aside = squared.max(zero).sqrt() * arc.turn;
-    let (base_x, base_y) = (toward * center_x, toward * arc.center_y);
-    let (off_x, off_y) = (aside * arc.center_y, aside * center_x);
-    let (enter_x, enter_y) = (base_x - off_x, base_y + off_y);
-    let (leave_x, leave_y) = (base_x + off_x, base_y - off_y);
+/// One of two points, lane by lane.
+#[inline(always)]
+fn select_point<S: Simd>(
+    mask: mask32x16<S>,
+    [x, y]: [f32x16<S>; 2],
+    [other_x, other_y]: [f32x16<S>; 2],
+) -> [f32x16<S>; 2] {
+    [mask.select(x, other_x), mask.select(y, other_y)]
+}
 
-    // Order along the arc is order along y.
-    let rise = if to_y < from_y { -1.0 } else { 1.0 };
-    let (enters, leaves) = (enter_y * rise, leave_y * rise);
-    let slack = inverse * SLACK_NEAR + SLACK;
-    let beside = center_x * arc.side - slack;
-    let crossed = (enter_x * arc.side).simd_ge(beside)
-        & (leave_x * arc.side).simd_ge(beside)
-        & enters.min(leaves).simd_ge(-slack + from_y * rise)
-        & enters.max(leaves).simd_le(slack + to_y * rise)
-        & squared.simd_gt(zero);
+#[inline(always)]
+pub(super) fn arc<S: Simd>(simd: S, columns: f32x16<S>, arc: &RowArc) -> f32x16<S> {
+    // An arc so near to the disc's own circle lies on it: where they cross is a matter of rounding.
+    const SAME: f32 = 1e-4;
+    let zero = f32x16::splat(simd, 0.0);
+    let one = f32x16::splat(simd, 1.0);
+    let splat = |v: f32| f32x16::splat(simd, v);
+    let center_x = arc.center.at(columns);
+    let [from_x, from_y, from_width] = arc.from;
+    let [to_x, to_y, to_width] = arc.to;
+    let (from_x, to_x) = (center_x + from_x, center_x + to_x);
+    let from_in = from_x.abs().simd_lt(splat(from_width));
+    let to_in = to_x.abs().simd_lt(splat(to_width));
+    let crossings = Crossings::find(simd, columns, arc);
+    let (enter, leave) = (crossings.enter(), crossings.leave());
+    let crossed = crosses(simd, center_x, &crossings, [enter, leave], arc);
+    let rise = arc.rise();
+    let (enters, leaves) = (enter[1] * rise, leave[1] * rise);
     let notched = from_in & to_in & crossed & leaves.simd_lt(enters);
     let same = (SAME - (arc.radius - 1.0).abs()).max(0.0);
     let met = (from_in | to_in | (crossed & enters.simd_le(leaves)))
-        & distance.simd_ge(f32x16::splat(simd, same * same));
+        & crossings.distance.simd_ge(splat(same * same));
 
     // From p to q it runs inside; or, where notched, all but from p to q.
-    let splat = |v: f32| f32x16::splat(simd, v);
-    let p_x = notched.select(leave_x, from_in.select(from_x, enter_x));
-    let p_y = notched.select(leave_y, from_in.select(splat(from_y), enter_y));
-    let q_x = notched.select(enter_x, to_in.select(to_x, leave_x));
-    let q_y = notched.select(enter_y, to_in.select(splat(to_y), leave_y));
-    let (chord_x, chord_y) = (q_x - p_x, q_y - p_y);
-    let inside = (p_x + q_x) * chord_y * (0.5 * FRAC_1_PI)
-        + segment(simd, chord_x * chord_x + chord_y * chord_y, arc.radius) * arc.turn;
-
-    let enter_half = half_disc_at(simd, enter_x, enter_y);
-    let leave_half = half_disc_at(simd, leave_x, leave_y);
-    // What lies outside is on one side of the disc as a whole. A crossing may be at the disc's top, where rounding decides
-    // on which side it is.
-    let enter_side = if from_width > 0.0 {
-        enter_x + from_x
-    } else {
-        enter_x
-    };
-    let leave_side = if to_width > 0.0 {
-        leave_x + to_x
-    } else {
-        leave_x
-    };
-    let before = (enter_half - arc.halves[0]) * one.copysign(enter_side);
-    let after = (leave_half - arc.halves[1]) * one.copysign(leave_side);
+    let p = [
+        notched.select(leave[0], from_in.select(from_x, enter[0])),
+        notched.select(leave[1], from_in.select(splat(from_y), enter[1])),
+    ];
+    let q = [
+        notched.select(enter[0], to_in.select(to_x, leave[0])),
+        notched.select(enter[1], to_in.select(splat(to_y), leave[1])),
+    ];
+    let inside = inside(simd, p, q, arc);
+    let before = beyond(
+        simd,
+        enter,
+        arc.seen_end(simd, 0, from_x),
+        splat(arc.halves[0]),
+    );
+    let after = beyond(
+        simd,
+        leave,
+        arc.seen_end(simd, 1, to_x),
+        splat(arc.halves[1]),
+    );
     let added = inside + from_in.select(zero, before) - to_in.select(zero, after);
-    let whole = (from_x + to_x) * ((to_y - from_y) * 0.5 * FRAC_1_PI) + arc.segment * arc.turn;
-    let but_notch = whole - inside + (enter_half - leave_half) * one.copysign(base_x);
-    let missed = one.copysign(center_x + arc.middle) * (arc.halves[1] - arc.halves[0]);
-    met.select(notched.select(but_notch, added), missed)
+    let notch = half_disc_at(simd, enter[0], enter[1]) - half_disc_at(simd, leave[0], leave[1]);
+    let but_notch = arc.whole(from_x, to_x) - inside + notch * one.copysign(crossings.base[0]);
+    met.select(notched.select(but_notch, added), arc.missed(simd, center_x))
 }
 
 /// An arc that passes the disc's whole height: the disc's part beyond the two circles' common chord, and the arc's own
@@ -370,18 +544,53 @@ pub(super) fn arc<S: Simd>(simd: S, columns: f32x16<S>, arc: &RowArc) -> f32x16<
 #[inline(always)]
 pub(super) fn through_arc<S: Simd>(simd: S, columns: f32x16<S>, arc: &RowArc) -> f32x16<S> {
     let zero = f32x16::splat(simd, 0.0);
-    let one = f32x16::splat(simd, 1.0);
-    let [power, slope, curvature] = arc.power;
-    let power = columns * (columns * curvature + slope) + power;
-    let far = (power + arc.radius * arc.radius).sqrt();
-    let reach = ((power + 1.0) / (far * 2.0)).max(-one).min(one);
-    let squared = (one - reach * reach).max(zero);
-    let half_chord = squared.sqrt();
-    let area =
-        segment(simd, squared * 4.0, arc.radius) - half_disc_at(simd, half_chord, reach) * 2.0;
+    let area = of_large_circle(simd, arc.power(columns), arc.radius);
     // On the centre's other side it is the circle's other half that a disc may meet.
     let beyond = (arc.center.at(columns) * arc.side).simd_ge(zero);
     beyond.select(f32x16::splat(simd, 0.5), area) * arc.turn
+}
+
+/// What the disc has of a circle larger than it, less a half: its part beyond the two circles' common chord, and the circle's own
+/// beyond that. `power` is the centre's squared distance less the squared radius.
+#[inline(always)]
+fn of_large_circle<S: Simd>(simd: S, power: f32x16<S>, radius: f32) -> f32x16<S> {
+    let (zero, one) = (f32x16::splat(simd, 0.0), f32x16::splat(simd, 1.0));
+    let far = (power + radius * radius).max(zero).sqrt();
+    let reach = ((power + 1.0) / (far * 2.0)).max(-one).min(one);
+    let squared = (one - reach * reach).max(zero);
+    let half_chord = squared.sqrt();
+    segment(simd, half_chord, squared, radius) - half_disc_at(simd, half_chord, reach) * 2.0
+}
+
+/// A circle, seen from a row of pixels.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RowCircle {
+    /// A pixel's squared distance from the centre less the squared radius: its value, slope and curvature.
+    pub(crate) power: [f32; 3],
+    pub(crate) radius: f32,
+}
+
+/// What discs have of a circle.
+#[inline(always)]
+pub(crate) fn circle<S: Simd>(simd: S, columns: f32x16<S>, circle: &RowCircle) -> f32x16<S> {
+    let (zero, one) = (f32x16::splat(simd, 0.0), f32x16::splat(simd, 1.0));
+    let (radius, [power, slope, curvature]) = (circle.radius, circle.power);
+    let power = columns * (columns * curvature + slope) + power;
+    let density = if radius >= core::f32::consts::SQRT_2 {
+        of_large_circle(simd, power, radius) + 0.5
+    } else {
+        // What either has beyond the common chord.
+        let squared = (power + radius * radius).max(f32x16::splat(simd, 1e-12));
+        let scale = f32x16::splat(simd, 0.5) / squared.sqrt();
+        let beyond = |chord: f32x16<S>| {
+            let chord = chord.max(-one).min(one);
+            let half = (one - chord * chord).max(zero).sqrt();
+            f32x16::splat(simd, 0.5) - half_disc_at(simd, half, chord) * 2.0
+        };
+        let own = (power + 2.0 * radius * radius - 1.0) * scale / radius;
+        beyond((power + 1.0) * scale) + beyond(own) * (radius * radius)
+    };
+    density.max(zero).min(one)
 }
 
 /// A line within the height of a row of pixels, whose squares it cuts.

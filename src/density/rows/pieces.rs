@@ -534,10 +534,12 @@ impl Piece {
                         radius as f32,
                     ),
                 };
-                if passes && radius >= SQRT_2 {
+                if radius < SQRT_2 {
+                    RowForm::Arc(arc)
+                } else if passes {
                     RowForm::ThroughArc(arc)
                 } else {
-                    RowForm::Arc(arc)
+                    RowForm::LongArc(arc)
                 }
             }
         }
