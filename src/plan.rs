@@ -145,7 +145,7 @@ pub struct Costs {
 pub const COSTS: Costs = Costs {
     pixel: 0.3,
     line: 0.9,
-    arc: 3.2,
+    arc: 2.8,
     average: 4.0,
     sum: 0.7,
     sum_row: 42.0,
@@ -255,7 +255,7 @@ impl Work {
             error_levels: levels.max(FINEST),
             cost_ns: COSTS.rounded * self.pixels,
             why: if is_circle {
-                "a circle: one profile along its radius"
+                "a circle: the closed form in its distance"
             } else {
                 "a rounded rectangle: its chords are closed form in its sides"
             },
@@ -407,8 +407,9 @@ mod tests {
             (&card, 8.0, 1.0, Method::NinePatch),
             (&card, 8.0, 0.25, Method::Direct),
             (&card, 0.0, 0.25, Method::Direct),
-            (&card, 1.0, 1.0, Method::Direct),
-            (&card, 1.0, 0.5, Method::Exact),
+            (&card, 1.0, 1.0, Method::NinePatch),
+            (&card, 1.6, 1.0, Method::Direct),
+            (&card, 1.6, 0.5, Method::Exact),
             (&star(5), 8.0, 1.0, Method::Direct),
             (&star(200), 40.0, 1.0, Method::Grid),
         ] {

@@ -33,25 +33,39 @@ const LARGEST_CIRCLE: f64 = 1024.0;
 /// Single precision tells a pixel's columns and rows apart from its neighbours' in rectangles up to this size, in pixels.
 const LARGEST: f64 = 32_768.0;
 
-/// The penumbra radii, in pixels, at which pixels are averages and this method serves: narrower ones are edges to it, and for wider
-/// ones few points of each pixel are enough.
-const AVERAGED: Range<f64> = 0.01..0.9;
+/// The least penumbra radius, in pixels, that is not an edge to this method.
+const NARROWEST: f64 = 0.01;
 
 /// Where pixels are averages, chords that stand for others show in rectangles thinner than this, in pixels.
 const THINNEST: f64 = 3.0;
+
+/// Whether averages over pixels cost less by this method, for a penumbra radius and the largest corner's, in pixels. From r = 0.9 px
+/// on few points of each pixel are enough, or one where a border is as good as straight: only small corners take them many. Two bands
+/// from there to r = 1.85 px cost as much as 3 x 3 points.
+fn averages_pay(radius: f64, corner: f64) -> bool {
+    let has_small_corners = (0.5..10.0).contains(&corner);
+    match radius {
+        ..NARROWEST => false,
+        ..0.9 => true,
+        ..1.4 | 1.85.. => has_small_corners,
+        _ => false,
+    }
+}
 
 /// The rounded rectangle or circle that a shadow is, if this method can draw it on so many pixels a scene unit.
 pub(crate) fn suited(shadow: &Shadow, per_unit: f64) -> Option<Rounded> {
     let rounded = shadow.rounded()?;
     let size = (rounded.max - rounded.min).max_element() + 2.0 * shadow.radius();
     let radius = shadow.radius() * per_unit;
+    let is_sampled = averaged_side(radius) == 0.0;
     let drawn = match rounded.circle() {
-        Some(circle) if averaged_side(radius) == 0.0 => circle <= LARGEST_CIRCLE * shadow.radius(),
+        Some(circle) if is_sampled => circle <= LARGEST_CIRCLE * shadow.radius(),
         _ => size * per_unit <= LARGEST,
     };
     let thinnest = (rounded.max - rounded.min).min_element() * per_unit;
-    let averaged = AVERAGED.contains(&radius) && thinnest >= THINNEST;
-    (drawn && (averaged_side(radius) == 0.0 || averaged)).then_some(rounded)
+    let corner = rounded.radii.into_iter().fold(0.0, f64::max) * per_unit;
+    let averaged = averages_pay(radius, corner) && thinnest >= THINNEST;
+    (drawn && (is_sampled || averaged)).then_some(rounded)
 }
 
 /// What this method leaves from drawing to drawing: memory.

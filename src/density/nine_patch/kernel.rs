@@ -1,8 +1,8 @@
 //! What a pixel's density is the average over: the light's disc, or below r = 3 px the disc moved all over the pixel's square.
 //!
 //! The square is taken in bands, one below the other. At a height above such a band's middle the average is over chords of many
-//! lengths at once, each moved along the square's side: for these one stands whose variance is the same. With one band its error
-//! is at most 0.7 level up to r = 0.9 px, and it falls with the square of the number of bands.
+//! lengths at once, each moved along the square's side: for these one stands whose variance is the same. Its error falls with the
+//! square of the number of bands.
 
 use core::f64::consts::PI;
 
@@ -31,6 +31,19 @@ struct Slice {
     above: f32,
 }
 
+/// The largest error with one band, in levels: from r = 0.9 px on the disc is neither much smaller than the square nor much larger at
+/// first. Measured on 6,000 rectangles.
+fn one_band(radius: f64) -> f64 {
+    match radius {
+        ..0.9 => 0.7,
+        0.9..1.85 => 1.25,
+        _ => 0.8,
+    }
+}
+
+/// The share of the tolerance that this may take.
+const SHARE: f64 = 0.8;
+
 /// Intervals from a band's middle to its end.
 const INTERVALS: usize = 32;
 
@@ -44,7 +57,7 @@ impl Kernel {
             self.bands = 1;
             return;
         }
-        self.bands = (1.0 / levels.sqrt()).ceil() as usize;
+        self.bands = (one_band(radius) / (SHARE * levels)).sqrt().ceil() as usize;
         let (half, reach) = (self.half_band(), self.reach());
         let all = PI * radius * radius * half;
         for interval in 0..=INTERVALS {
@@ -132,7 +145,12 @@ impl Kernel {
     fn slice(&self, height: f32) -> (Slice, Slice, f32) {
         let place = height.abs().min(1.0) * INTERVALS as f32;
         let slice = place as usize;
-        (self.slices[slice], self.slices[slice + 1], place.fract())
+        // The fraction itself is a call where a level has no instruction for it.
+        (
+            self.slices[slice],
+            self.slices[slice + 1],
+            place - slice as f32,
+        )
     }
 
     /// The integrals up to a height from the disc's middle of half a chord, of its cube, and of the first of these integrals.
