@@ -11,6 +11,7 @@ mod meet;
 mod member;
 mod occluder;
 mod pixel;
+mod wedge;
 
 use core::ops::Range;
 

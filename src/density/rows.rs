@@ -8,7 +8,7 @@
 mod kernels;
 mod pieces;
 
-pub(crate) use kernels::{RowCircle, Wide, circle, half_disc};
+pub(crate) use kernels::{RowCircle, Wide, circle, half_disc, turns, whole_disc};
 pub(crate) use pieces::each_line;
 
 use core::ops::Range;

@@ -11,6 +11,7 @@ use super::company::{Company, Together};
 use super::member::{Kind, Member};
 use super::occluder::{NearRows, Occluder};
 use super::pixel::{Pixels, Seen};
+use super::wedge::Wedge;
 use crate::density::lanes::LANES;
 
 /// The sine of the largest angle between parallel lines.
@@ -24,6 +25,15 @@ const ROWS: f64 = 8.0;
 
 /// Chords are placed for so many times the pixels that are worked on together, where each of these is one point.
 const BLOCKS: i64 = 4;
+
+/// How the only two lines that a disc meets run.
+#[derive(Debug, Clone, Copy)]
+enum Lines {
+    /// Parallel: one caster hides what the other does, or what it does not.
+    FaceOneWay,
+    FaceEachOther,
+    Cross(Wedge),
+}
 
 /// The companies of a group's members that pixels have shown so far.
 pub(super) type Companies<'a> = BTreeMap<Seen, Company<'a>>;
@@ -120,24 +130,31 @@ impl Meet {
         // is found.
         let (mut origin, mut origin_until) = (middle.floor(), f64::MIN);
         let (mut known, mut placed) = (None, None);
-        let (mut parallel, mut until) = (None, f64::MIN);
+        let (mut lines, mut until) = (None, f64::MIN);
+        let mut crossed = 0..0;
         let count = run.len();
         for (index, pixel) in run.enumerate() {
             let at = middle + DVec2::new(index as f64, 0.0);
             if at.x >= until {
-                (parallel, until) = self.parallel(company, at);
+                (lines, until) = self.lines(company, at);
+                crossed = 0..0;
             }
             let pair = match company.together {
                 Together::Pair { cross, is_known } if is_known => Some(cross),
                 _ => None,
             };
             let [a, b] = pixels.densities(pixel);
-            if let (Some(cross), Some(faces_one_way)) = (pair, parallel) {
-                // One hides what the other does, or what it does not.
-                let shared = if faces_one_way {
-                    a.min(b)
-                } else {
-                    (a + b - 1.0).max(0.0)
+            if let (Some(cross), Some(lines)) = (pair, lines) {
+                let shared = match lines {
+                    Lines::FaceOneWay => a.min(b),
+                    Lines::FaceEachOther => (a + b - 1.0).max(0.0),
+                    Lines::Cross(wedge) => {
+                        if !crossed.contains(&index) {
+                            crossed = index..(index + LANES).min(count);
+                            wedge.shared(self.level, middle, crossed.clone(), &mut self.together);
+                        }
+                        self.together[index - crossed.start]
+                    }
                 };
                 pixels.mend(pixel, cross * (shared - a * b));
                 continue;
@@ -199,9 +216,9 @@ impl Meet {
         (origin.unwrap_or(at.floor()), until)
     }
 
-    /// Whether the disc about a point shows a single line of each of a pair, and these are parallel: then, whether they face one
-    /// way. And up to which x to the right of the point that stays so.
-    fn parallel(&self, company: &Company<'_>, at: DVec2) -> (Option<bool>, f64) {
+    /// How the lines run, where the disc about a point shows a single one of each of a pair; and up to which x to the right of the
+    /// point that stays so.
+    fn lines(&self, company: &Company<'_>, at: DVec2) -> (Option<Lines>, f64) {
         let [a, b] = *company.partial else {
             return (None, f64::MAX);
         };
@@ -212,11 +229,16 @@ impl Meet {
             Kind::Level(occluder) => occluder.single_line(&self.near[of.index], at),
             Kind::Tilted(_) => (None, f64::MAX),
         });
-        let parallel = a.zip(b).and_then(|(a, b)| {
-            let is_parallel = a.perp_dot(b).abs() <= PARALLEL * a.length() * b.length();
-            is_parallel.then_some(a.dot(b) > 0.0)
+        let lines = a.zip(b).map(|(a, b)| {
+            if a.along.perp_dot(b.along).abs() > PARALLEL {
+                Lines::Cross(Wedge::new([a, b]))
+            } else if a.along.dot(b.along) > 0.0 {
+                Lines::FaceOneWay
+            } else {
+                Lines::FaceEachOther
+            }
         });
-        (parallel, until_a.min(until_b))
+        (lines, until_a.min(until_b))
     }
 
     /// Follows the light to the pixels that are worked on together, the first of which is so many pixels `behind` one that has its

@@ -4,6 +4,7 @@ use core::ops::Range;
 
 use glam::DVec2;
 
+use super::wedge::Border;
 use crate::tilted::Circle;
 
 /// Along an outline that runs by more than this for each step up, chords change faster than pieces of the disc's height tell.
@@ -101,9 +102,9 @@ impl Occluder {
         (origin, until)
     }
 
-    /// The direction of the outline where the disc about a point meets it in a single line from one side to the other, or none;
-    /// and up to which x to the right of the point that stays so. `near` is what rows of points with it may meet.
-    pub(super) fn single_line(&self, near: &NearRows, at: DVec2) -> (Option<DVec2>, f64) {
+    /// The outline where the disc about a point meets it in a single line from one side to the other, or none; and up to which x to
+    /// the right of the point that stays so. `near` is what rows of points with it may meet.
+    pub(super) fn single_line(&self, near: &NearRows, at: DVec2) -> (Option<Border>, f64) {
         let reach = self.radius;
         let (mut count, mut single, mut until) = (0, None, f64::MAX);
         for of_loop in near.loops() {
@@ -134,11 +135,17 @@ impl Occluder {
                     until = until.min(base + low.x + reach);
                 }
                 if spans_rows || spans_columns {
-                    single = Some(to - from);
+                    single = Some((of_loop.base, from, to - from));
                 }
             }
         }
-        (single.filter(|_| count == 1), until)
+        let border = |(base, from, along): (DVec2, DVec2, DVec2)| Border {
+            base,
+            from,
+            along: along.normalize(),
+            radius: self.radius,
+        };
+        (single.filter(|_| count == 1).map(border), until)
     }
 
     /// A caster of many radii as one point sees it, on the light's unit disc.

@@ -55,17 +55,38 @@ fn half_disc_x8<S: Simd>(simd: S, t: f32x16<S>) -> f32x16<S> {
     (f32x16::splat(simd, 0.25) - tail).copysign(t)
 }
 
+/// The angle of a point (x, y) of the circle whose coordinates are not negative, in turns.
+#[inline(always)]
+fn quarter_turns<S: Simd>(simd: S, x: f32x16<S>, y: f32x16<S>) -> f32x16<S> {
+    let u = x.min(y);
+    let u2 = u * u;
+    let [a, b, c, d, e] = ARC_SINE;
+    let sine = u * (u2 * (u2 * (u2 * (u2 * e + d) + c) + b) + a);
+    y.simd_le(x).select(sine, f32x16::splat(simd, 0.25) - sine)
+}
+
+/// The angle of a point (x, y) of the circle, from -1/2 turn to 1/2.
+#[inline(always)]
+pub(crate) fn turns<S: Simd>(simd: S, x: f32x16<S>, y: f32x16<S>) -> f32x16<S> {
+    let near = quarter_turns(simd, x.abs(), y.abs());
+    let is_left = x.simd_lt(f32x16::splat(simd, 0.0));
+    is_left
+        .select(f32x16::splat(simd, 0.5) - near, near)
+        .copysign(y)
+}
+
 /// `half_disc(y)` for a point (x, y) of the circle: without a root, as x is one.
 #[inline(always)]
 fn half_disc_at<S: Simd>(simd: S, x: f32x16<S>, y: f32x16<S>) -> f32x16<S> {
     let (x, height) = (x.abs(), y.abs());
-    let flat = height.simd_le(x);
-    let u = x.min(height);
-    let u2 = u * u;
-    let [a, b, c, d, e] = ARC_SINE;
-    let sine = u * (u2 * (u2 * (u2 * (u2 * e + d) + c) + b) + a);
-    let angle = flat.select(sine, f32x16::splat(simd, 0.25) - sine);
+    let angle = quarter_turns(simd, x, height);
     (x * height * (0.5 * FRAC_1_PI) + angle).copysign(y)
+}
+
+/// What of the disc lies inside of a straight border so far inside of which its middle is: the profile F.
+#[inline(always)]
+pub(crate) fn whole_disc<S: Simd>(simd: S, depth: f32x16<S>) -> f32x16<S> {
+    half_disc_x8(simd, depth) * 2.0 + 0.5
 }
 
 /// A number that changes by the same step from pixel to pixel.
