@@ -146,7 +146,7 @@ pub const COSTS: Costs = Costs {
     pixel: 0.3,
     line: 0.9,
     arc: 2.8,
-    average: 4.0,
+    average: 8.0,
     sum: 0.7,
     sum_row: 42.0,
     rounded: 0.5,

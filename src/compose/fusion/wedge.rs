@@ -77,13 +77,27 @@ impl Wedge {
                 *depth = border.depth(first + DVec2::new(point as f64, 0.0)) as f32;
             }
         }
+        let [a, b] = &depths;
         dispatch!(level, simd => simd.vectorize(#[inline(always)] || {
-            self.shared_at(simd, depths.map(|depths| f32x16::from_slice(simd, &depths))).store_slice(out);
+            let (a, b) = (f32x16::from_slice(simd, a), f32x16::from_slice(simd, b));
+            self.shared_at(simd, a, b).store_slice(out);
         }));
     }
 
+    /// Where one of the borders leaves the disc for what the other hides.
     #[inline(always)]
-    fn shared_at<S: Simd>(&self, simd: S, [a, b]: [f32x16<S>; 2]) -> f32x16<S> {
+    fn end<S: Simd>(&self, simd: S, of: usize, depth: f32x16<S>) -> [f32x16<S>; 2] {
+        let (normal, way) = (self.normals[of], self.ways[of]);
+        let square = f32x16::splat(simd, 1.0) - depth * depth;
+        let half = square.max(f32x16::splat(simd, 0.0)).sqrt();
+        [
+            depth * normal.x + half * way.x,
+            depth * normal.y + half * way.y,
+        ]
+    }
+
+    #[inline(always)]
+    fn shared_at<S: Simd>(&self, simd: S, a: f32x16<S>, b: f32x16<S>) -> f32x16<S> {
         let splat = |v: f32| f32x16::splat(simd, v);
         let (zero, one) = (splat(0.0), splat(1.0));
         let (of_a, of_b) = (whole_disc(simd, a), whole_disc(simd, b));
@@ -92,17 +106,11 @@ impl Wedge {
 
         let [c, d] = self.crossing;
         let (x, y) = (a * c.x + b * d.x, a * c.y + b * d.y);
-        let [p, q] = [(a, 0), (b, 1)].map(|(depth, which)| {
-            let (normal, way) = (self.normals[which], self.ways[which]);
-            let half = (one - depth * depth).max(zero).sqrt();
-            (
-                depth * normal.x + half * way.x,
-                depth * normal.y + half * way.y,
-            )
-        });
-        let arc = turns(simd, q.0, q.1) - turns(simd, p.0, p.1);
+        let p = self.end(simd, 0, a);
+        let q = self.end(simd, 1, b);
+        let arc = turns(simd, q[0], q[1]) - turns(simd, p[0], p[1]);
         let arc = arc.simd_lt(splat(-SAME)).select(arc + 1.0, arc);
-        let sides = (x * (p.1 - q.1) - y * (p.0 - q.0)) * (0.5 * FRAC_1_PI);
+        let sides = (x * (p[1] - q[1]) - y * (p[0] - q[0])) * (0.5 * FRAC_1_PI);
         let crossed = (sides + arc).max(least).min(most);
 
         // Whether each border's chord lies in what the other hides.
