@@ -45,7 +45,14 @@ pub(super) enum Form {
         radius: f64,
         turn: f64,
         side: f64,
+        /// The area between it and its chord, over π.
+        segment: f32,
     },
+}
+
+/// The area between an arc from one point to another and its chord, over π.
+fn segment(from: DVec2, to: DVec2, radius: f64) -> f32 {
+    kernels::segment_of((to - from).length_squared() as f32, radius as f32)
 }
 
 impl Form {
@@ -58,6 +65,7 @@ impl Form {
                 radius,
                 turn,
                 side,
+                ..
             } => Some((center, radius, [turn, side])),
         }
     }
@@ -200,6 +208,7 @@ fn push_arc(arc: &Arc, first: usize, pieces: &mut Vec<Piece>) {
                 radius: arc.radius,
                 turn,
                 side: 1.0_f64.copysign(middle),
+                segment: segment(from, to, arc.radius),
             },
             chain: [from.y.min(to.y), from.y.max(to.y)],
         };
@@ -276,13 +285,16 @@ impl Piece {
             && (radius - r).abs() < SAME
             && radius >= SQRT_2;
         let (low, high) = (self.low.min(next.low), self.high.max(next.high));
-        let joined = Self {
+        let mut joined = Self {
             low,
             high,
             to: next.to,
             chain: [low, high],
             ..*self
         };
+        if let Form::Arc { segment: whole, .. } = &mut joined.form {
+            *whole = segment(joined.from, joined.to, radius);
+        }
         same.then_some(joined)
     }
 
@@ -365,6 +377,18 @@ impl Piece {
                     left = left.min(farthest - reach);
                     right = right.max(farthest + reach);
                 }
+                // A disc farther than 1 from the circle does not meet it. Above and below the circle's middle part a disc beside the centre
+                // may meet either half.
+                let beside = |r: f64| center.x + side * (r * r - rise * rise).max(0.0).sqrt();
+                let ends = [radius - reach, radius + reach];
+                let inner = (rise.abs() < ends[0]).then(|| beside(ends[0]));
+                let outer = beside(ends[1]);
+                let (least, most) = if side > 0.0 {
+                    (inner.unwrap_or(left), outer)
+                } else {
+                    (outer, inner.unwrap_or(right))
+                };
+                (left, right) = (left.max(least), right.min(most));
             }
         }
         [left, right.max(left)]
@@ -454,6 +478,7 @@ impl Piece {
                 radius: arc_radius,
                 turn,
                 side,
+                ..
             } => {
                 let seen = center - origin;
                 RowForm::WideArc(WideArc {
@@ -506,6 +531,7 @@ impl Piece {
                 radius,
                 turn,
                 side,
+                segment,
             } => {
                 let seen = center - origin;
                 let end = |end: DVec2| {
@@ -513,6 +539,13 @@ impl Piece {
                     let width = 1.0 - end.y * end.y;
                     let width = if width > 0.0 { width.sqrt() } else { -1.0 };
                     [end.x - seen.x, end.y, width].map(|v| v as f32)
+                };
+                // The end that is less high or low, if any is within the disc's height.
+                let nearer = if from.y.abs() < to.y.abs() { from } else { to };
+                let middle = if nearer.y.abs() < 1.0 {
+                    nearer.x
+                } else {
+                    self.x_at(origin.y + (low + high) / 2.0) - origin.x
                 };
                 let arc = RowArc {
                     center: ramp(seen.x, 1.0),
@@ -527,12 +560,9 @@ impl Piece {
                     side: side as f32,
                     from: end(from),
                     to: end(to),
-                    middle: (self.x_at(origin.y + (low + high) / 2.0) - center.x) as f32,
+                    middle: (middle - seen.x) as f32,
                     halves,
-                    segment: kernels::segment_of(
-                        (to - from).length_squared() as f32,
-                        radius as f32,
-                    ),
+                    segment,
                 };
                 if radius < SQRT_2 {
                     RowForm::Arc(arc)
