@@ -97,10 +97,10 @@ impl Kernel {
         self.radius + self.half_band()
     }
 
-    /// How much of what a band averages over lies above a height: over the reach it is the sine of an `angle`.
-    pub(super) fn above(&self, angle: f64, [sine, cosine]: [f64; 2]) -> f64 {
+    /// How much of what a band averages over lies above a height, over the reach, at which that is the disc's `half`.
+    pub(super) fn above(&self, sine: f64, half: f64) -> f64 {
         if !self.is_averaged() {
-            return 0.5 + (angle + sine * cosine) / PI;
+            return 0.5 + 2.0 * half;
         }
         let (slice, next, share) = self.slice(sine as f32);
         let above = slice.above + (next.above - slice.above) * share;

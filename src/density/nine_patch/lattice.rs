@@ -108,8 +108,10 @@ impl Lattice {
 
     /// The cell at a place among the rows.
     pub(super) fn cell(&self, place: f64) -> Cell {
-        let knot = place.floor();
-        let row = knot as i64;
+        // The function for it is a call where a level has no instruction.
+        let whole = place as i64;
+        let row = whole - i64::from(whole as f64 > place);
+        let knot = row as f64;
         if self.is_apart {
             Cell {
                 rows: [row - 1, row, row + 1, row + 2].map(|row| self.folded(row)),

@@ -6,11 +6,14 @@
 //! wrong by the square of their distance there as well. What a level edge covers of the whole disc is closed form, and the
 //! sum is scaled to it.
 
+use core::f64::consts::TAU;
+
 use fearless_simd::{Simd, SimdBase, SimdFloat, f32x16};
 
 use super::kernel::Kernel;
 use crate::density::lanes::LANES;
 use crate::density::rounded::Rounded;
+use crate::density::rows::Window;
 
 /// Heights of a disc for a tolerance of one level: with 16 the sum is wrong by at most 0.4 of it for corners up to
 /// twice the disc's size. Measured on corners of 0 to 200 radii, no bound.
@@ -127,8 +130,10 @@ impl Nodes {
             (end, end_cosine, end_above),
         ] = [shape.min.y - y, shape.max.y - y].map(|end| {
             let sine = (end / reach).clamp(-1.0, 1.0);
-            let (angle, cosine) = (libm::asin(sine), (1.0 - sine * sine).sqrt());
-            (angle, cosine, kernel.above(angle, [sine, cosine]))
+            let cosine = (1.0 - sine * sine).sqrt();
+            // The disc's half is (sin t cos t + t) / 2π.
+            let half = f64::from(Window::Disc.half(sine));
+            (TAU * half - sine * cosine, cosine, kernel.above(sine, half))
         });
         let between = ((end_above - start_above) / kernel.count() as f64) as f32;
         row.between += between;
