@@ -114,7 +114,12 @@ impl Lattice {
         let knot = row as f64;
         if self.is_apart {
             Cell {
-                rows: [row - 1, row, row + 1, row + 2].map(|row| self.folded(row)),
+                rows: [
+                    self.folded(row - 1),
+                    self.folded(row),
+                    self.folded(row + 1),
+                    self.folded(row + 2),
+                ],
                 weights: cubic::weights(place - knot),
             }
         } else {

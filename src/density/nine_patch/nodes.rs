@@ -125,31 +125,19 @@ impl Nodes {
             row,
         } = self;
         let reach = kernel.reach();
-        let [
-            (start, start_cosine, start_above),
-            (end, end_cosine, end_above),
-        ] = [shape.min.y - y, shape.max.y - y].map(|end| {
-            let sine = (end / reach).clamp(-1.0, 1.0);
-            let cosine = (1.0 - sine * sine).sqrt();
-            // The disc's half is (sin t cos t + t) / 2π.
-            let half = f64::from(Window::Disc.half(sine));
-            (TAU * half - sine * cosine, cosine, kernel.above(sine, half))
-        });
+        let (start, start_cosine, start_above) = end_of(kernel, shape.min.y - y);
+        let (end, end_cosine, end_above) = end_of(kernel, shape.max.y - y);
         let between = ((end_above - start_above) / kernel.count() as f64) as f32;
         row.between += between;
         let splat = |v: f32| f32x16::splat(simd, v);
         let (zero, one) = (splat(0.0), splat(1.0));
-        let [start, length] = [start, end - start].map(|angle| angle as f32);
-        let closer = [start_cosine, end_cosine].map(|cosine| cosine as f32 * CLOSER);
+        let (start, length) = (start as f32, (end - start) as f32);
+        let closer = [start_cosine as f32 * CLOSER, end_cosine as f32 * CLOSER];
         let [tl, tr, br, bl] = shape.radii;
         // A corner's radius, and how far beyond the middle of its arc the discs' are.
-        let corners = [[tl, bl], [tr, br]].map(|[upper, lower]| {
-            let rises = [shape.min.y + upper - y, y + lower - shape.max.y];
-            [
-                (upper as f32, rises[0] as f32),
-                (lower as f32, rises[1] as f32),
-            ]
-        });
+        let upper = |corner: f64| (corner as f32, (shape.min.y + corner - y) as f32);
+        let lower = |corner: f64| (corner as f32, (y + corner - shape.max.y) as f32);
+        let corners = [[upper(tl), lower(bl)], [upper(tr), lower(br)]];
         let reach = reach as f32;
         let is_averaged = kernel.is_averaged();
         let half_side = 0.5 * kernel.side as f32;
@@ -204,6 +192,16 @@ impl Nodes {
             scaled.store_slice(weights);
         }
     }
+}
+
+/// The angle at which a band ends that far below its middle, in pixels, its cosine, and how much of the band lies above.
+#[inline(always)]
+fn end_of(kernel: &Kernel, end: f64) -> (f64, f64, f64) {
+    let sine = (end / kernel.reach()).clamp(-1.0, 1.0);
+    let cosine = (1.0 - sine * sine).sqrt();
+    // The disc's half is (sin t cos t + t) / 2π.
+    let half = f64::from(Window::Disc.half(sine));
+    (TAU * half - sine * cosine, cosine, kernel.above(sine, half))
 }
 
 /// The sum of all lanes, in pairs.
