@@ -17,6 +17,7 @@ use core::ops::Range;
 
 use fearless_simd::Simd;
 
+use self::kernel::LIKE_SQUARE;
 use self::lattice::{Cell, Lattice};
 use self::nodes::Nodes;
 use self::reach::{BLOCK, Reach};
@@ -39,17 +40,14 @@ const NARROWEST: f64 = 0.01;
 /// Where pixels are averages, chords that stand for others show in rectangles thinner than this, in pixels.
 const THINNEST: f64 = 3.0;
 
-/// Whether averages over pixels cost less by this method, for a penumbra radius and the largest corner's, in pixels. From r = 0.9 px
-/// on few points of each pixel are enough, or one where a border is as good as straight: only small corners take them many. Two bands
-/// from there to r = 1.85 px cost as much as 3 x 3 points.
+/// Whether averages over pixels cost less by this method, for a penumbra radius and the largest corner's, in pixels. By closed form few
+/// points of each pixel are enough from r = 0.9 px on, or one where a border is as good as straight: only small corners take them many,
+/// and two bands of heights cost as much as the 3 x 3 points from r = 1.4 px on.
 fn averages_pay(radius: f64, corner: f64) -> bool {
-    let has_small_corners = (0.5..10.0).contains(&corner);
-    match radius {
-        ..NARROWEST => false,
-        ..0.9 => true,
-        ..1.4 | 1.85.. => has_small_corners,
-        _ => false,
+    if radius < LIKE_SQUARE.start {
+        return radius >= NARROWEST;
     }
+    (0.5..10.0).contains(&corner) && !(1.4..LIKE_SQUARE.end).contains(&radius)
 }
 
 /// The rounded rectangle or circle that a shadow is, if this method can draw it on so many pixels a scene unit.

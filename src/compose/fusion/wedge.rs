@@ -44,8 +44,8 @@ pub(super) struct Wedge {
     cosine: f32,
 }
 
-/// Crossings that rounding may have put in the other order are at most so far from each other, in turns: whether all of the disc's edge or
-/// nothing of it is between them is told by how much there is at least and at most.
+/// Ends that rounding may have put in the other order are at most so far from each other, in turns: whether all of the disc's edge or
+/// nothing of it lies between them is told by how much both hide at least and at most.
 const SAME: f32 = 1e-5;
 
 impl Wedge {
@@ -70,7 +70,7 @@ impl Wedge {
 
     /// The part of the disc that both hide from some points of a row, the first of which is there and the others a pixel apart.
     pub(super) fn shared(&self, level: Level, first: DVec2, points: Range<usize>, out: &mut Lane) {
-        let mut depths = [[0.0; 16]; 2];
+        let mut depths: [Lane; 2] = Default::default();
         for (depths, border) in depths.iter_mut().zip(&self.borders) {
             for (depth, point) in depths.iter_mut().zip(points.clone()) {
                 // Of the point itself: where others begin changes nothing.
