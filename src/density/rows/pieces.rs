@@ -351,9 +351,16 @@ impl Piece {
     /// The least and the largest x from which a window in the row at `y` meets the piece.
     #[inline(always)]
     pub(super) fn extent(&self, y: f64, window: Window) -> [f64; 2] {
-        let reach = window.reach();
         let [low, high] = self.met(y, window);
         let (a, b) = (self.x_at(y + low), self.x_at(y + high));
+        let reach = match self.form {
+            // Half of the disc's widest chord between the two heights: lines are too cheap for it to pay.
+            Form::Arc { .. } => {
+                let nearest = low.max(-high).max(0.0);
+                (1.0 - nearest * nearest).sqrt()
+            }
+            Form::Line { .. } => window.reach(),
+        };
         let (mut left, mut right) = (a.min(b) - reach, a.max(b) + reach);
         if window == Window::Square {
             return [left, right];
@@ -380,7 +387,7 @@ impl Piece {
                 // A disc farther than 1 from the circle does not meet it. Above and below the circle's middle part a disc beside the centre
                 // may meet either half.
                 let beside = |r: f64| center.x + side * (r * r - rise * rise).max(0.0).sqrt();
-                let ends = [radius - reach, radius + reach];
+                let ends = [radius - 1.0, radius + 1.0];
                 let inner = (rise.abs() < ends[0]).then(|| beside(ends[0]));
                 let outer = beside(ends[1]);
                 let (least, most) = if side > 0.0 {
