@@ -137,10 +137,13 @@ fn draw_part(
         }
         Method::Direct | Method::Grid | Method::NinePatch => {
             let levels = options.tolerance.as_levels();
-            let mut edges = scratch.take();
-            shadow.arcs_into(CURVES * levels, 1.0 / per_unit, &mut edges);
             let radius = shadow.radius() * per_unit;
-            if method == Method::Grid && grid::suits(radius, levels, shadow.extent() * per_unit) {
+            let sums =
+                method == Method::Grid && grid::suits(radius, levels, shadow.extent() * per_unit);
+            let curves = if sums { CURVES } else { direct::curves(radius) };
+            let mut edges = scratch.take();
+            shadow.arcs_into(curves * levels, 1.0 / per_unit, &mut edges);
+            if sums {
                 dispatch!(level, simd => grid::fill(simd, &edges, radius, on, options, scratch, sink));
             } else {
                 let radius = shadow.radius();

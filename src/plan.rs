@@ -8,7 +8,7 @@ use core::str::FromStr;
 
 use crate::density::frame::Frame;
 use crate::density::{
-    CURVES, EXACT_SHARE, PixelOptions, averaged_side, direct, exact, grid, nine_patch, reach,
+    EXACT_SHARE, PixelOptions, averaged_side, direct, exact, grid, nine_patch, reach,
 };
 use crate::grid::Grid;
 use crate::shadow::Shadow;
@@ -145,7 +145,7 @@ pub struct Costs {
 pub const COSTS: Costs = Costs {
     pixel: 0.3,
     line: 0.9,
-    arc: 2.8,
+    arc: 2.3,
     average: 8.0,
     sum: 0.7,
     sum_row: 42.0,
@@ -231,7 +231,7 @@ impl Work {
             error_levels: if self.is_averaged() {
                 direct::AVERAGED
             } else {
-                CURVES * levels + direct::ROUNDING
+                direct::curves(self.radius) * levels + direct::ROUNDING
             },
             cost_ns: COSTS.pixel * self.pixels
                 + (COSTS.line * self.lines + COSTS.arc * self.arcs) * self.averages(COSTS.average),

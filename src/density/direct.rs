@@ -8,7 +8,7 @@ use fearless_simd::Simd;
 use super::frame::Frame;
 use super::rows::Lattice;
 use super::sampling::Sampling;
-use super::{PixelOptions, Sink, reach, seen_columns};
+use super::{CURVES, PixelOptions, Sink, averaged_side, reach, seen_columns};
 use crate::grid::Grid;
 use crate::outline::{self, Edge};
 use crate::scratch::Scratch;
@@ -91,6 +91,16 @@ enum Computed {
     Nothing,
     Seen,
     All,
+}
+
+/// The share of the tolerance that arcs in place of curves may take, for a penumbra radius in pixels: most of it where nothing else
+/// is wrong but rounding.
+pub(crate) fn curves(radius: f64) -> f64 {
+    if averaged_side(radius) > 0.0 {
+        CURVES
+    } else {
+        0.5
+    }
 }
 
 /// The largest error of averages over pixels, in levels.

@@ -52,6 +52,8 @@ pub(super) struct Meet {
     densities: Vec<Lane>,
     of_row: Vec<Lane>,
     hidden: Vec<f32>,
+    /// What both of a pair hide from some pixels that see one line of each.
+    shared: Lane,
 }
 
 impl Default for Meet {
@@ -65,6 +67,7 @@ impl Default for Meet {
             densities: Vec::new(),
             of_row: Vec::new(),
             hidden: Vec::new(),
+            shared: [0.0; LANES],
         }
     }
 }
@@ -151,9 +154,9 @@ impl Meet {
                     Lines::Cross(wedge) => {
                         if !crossed.contains(&index) {
                             crossed = index..(index + LANES).min(count);
-                            wedge.shared(self.level, middle, crossed.clone(), &mut self.together);
+                            wedge.shared(self.level, middle, crossed.clone(), &mut self.shared);
                         }
-                        self.together[index - crossed.start]
+                        self.shared[index - crossed.start]
                     }
                 };
                 pixels.mend(pixel, cross * (shared - a * b));
