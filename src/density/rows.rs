@@ -8,8 +8,8 @@
 mod kernels;
 mod pieces;
 
-pub(crate) use kernels::{Wide, half_disc};
-pub(crate) use pieces::each_line;
+pub(crate) use kernels::{Wide, half_disc, half_disc_x8, line_at};
+pub(crate) use pieces::{ERROR, arc_chord, each_line};
 
 use core::ops::Range;
 

@@ -48,7 +48,7 @@ pub(crate) fn half_disc(t: f32) -> f32 {
 
 /// As [`half_disc`], for sixteen numbers.
 #[inline(always)]
-fn half_disc_x8<S: Simd>(simd: S, t: f32x16<S>) -> f32x16<S> {
+pub(crate) fn half_disc_x8<S: Simd>(simd: S, t: f32x16<S>) -> f32x16<S> {
     let v = (f32x16::splat(simd, 1.0) - t.abs()).max(f32x16::splat(simd, 0.0));
     let [a, b, c, d, e] = HALF_DISC;
     let tail = v * v.sqrt() * (v * (v * (v * (v * e + d) + c) + b) + a);
@@ -213,12 +213,29 @@ pub(super) struct RowLine {
 
 #[inline(always)]
 pub(super) fn line<S: Simd>(simd: S, columns: f32x16<S>, line: &RowLine) -> f32x16<S> {
-    let zero = f32x16::splat(simd, 0.0);
-    let one = f32x16::splat(simd, 1.0);
-    let [along_x, along_y] = line.along;
     let distance = line.distance.at(columns);
     let start = line.start.at(columns);
-    let end = start + line.length;
+    let halves = [
+        f32x16::splat(simd, line.halves[0]),
+        f32x16::splat(simd, line.halves[1]),
+    ];
+    line_at(simd, distance, start, line.length, line.along, halves)
+}
+
+/// A line by its signed distance and where on it its start is, counted from the foot point; `halves` are `half_disc` at its
+/// start's y and at its end's.
+#[inline(always)]
+pub(crate) fn line_at<S: Simd>(
+    simd: S,
+    distance: f32x16<S>,
+    start: f32x16<S>,
+    length: f32,
+    [along_x, along_y]: [f32; 2],
+    halves: [f32x16<S>; 2],
+) -> f32x16<S> {
+    let zero = f32x16::splat(simd, 0.0);
+    let one = f32x16::splat(simd, 1.0);
+    let end = start + length;
     let half_chord = (one - distance * distance).max(zero).sqrt();
     // The part inside the disc; where there is none, both are the end nearer to it.
     let begins = start.simd_lt(-half_chord);
@@ -233,12 +250,12 @@ pub(super) fn line<S: Simd>(simd: S, columns: f32x16<S>, line: &RowLine) -> f32x
         (last - first) * (foot_x + (first + last) * (0.5 * along_x)) * (along_y * FRAC_1_PI);
     let (chord_x, chord_y) = (half_chord * along_x, half_chord * along_y);
     let (enter_x, leave_x) = (foot_x - chord_x, foot_x + chord_x);
-    let before = half_disc_at(simd, enter_x, foot_y - chord_y) - line.halves[0];
-    let after = -(half_disc_at(simd, leave_x, foot_y + chord_y) - line.halves[1]);
+    let before = half_disc_at(simd, enter_x, foot_y - chord_y) - halves[0];
+    let after = -(half_disc_at(simd, leave_x, foot_y + chord_y) - halves[1]);
     let added = inside
         + begins.select(before * one.copysign(enter_x), zero)
         + goes_on.select(after * one.copysign(leave_x), zero);
-    let beside = one.copysign(foot_x + first * along_x) * (line.halves[1] - line.halves[0]);
+    let beside = one.copysign(foot_x + first * along_x) * (halves[1] - halves[0]);
     met.select(added, beside)
 }
 
