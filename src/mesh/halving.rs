@@ -304,7 +304,7 @@ impl HalvingScratch {
         let Self { tube, halves, .. } = self;
         dispatch!(level, simd => simd.vectorize(
             #[inline(always)]
-            || halves.choose(tube),
+            || halves.choose(simd, tube),
         ));
         halves.collect(tube);
         self.unfold(lattice);
