@@ -26,7 +26,7 @@ use self::halves::Halves;
 use self::tips::Tip;
 use self::tube::Tube;
 use super::{MeshOptions, MeshQuality, MeshSink, MeshVertex, Profile};
-use crate::density::tiles::{self, Tiles};
+use crate::density::tiles::{self, Lattice, Tiles};
 use crate::error::Result;
 use crate::outline::{self, Edge};
 use crate::scratch::Scratch;
@@ -100,16 +100,6 @@ pub(crate) struct HalvingScratch {
     numbers: Vec<u32>,
     /// Those that are vertices, by number.
     vertices: Vec<u32>,
-}
-
-/// Where the samples are, without what is folded away.
-#[derive(Debug, Clone, Copy)]
-struct Lattice {
-    /// The first sample, in scene units, and from each to the next.
-    corner: DVec2,
-    pitch: f64,
-    /// Columns and rows of samples.
-    size: [usize; 2],
 }
 
 impl Lattice {
@@ -270,7 +260,7 @@ impl HalvingScratch {
         let samples = tube.begin(lattice.size);
         let level = scratch.level();
         dispatch!(level, simd => {
-            tiles.fill(simd, folded, radius, lattice.corner, lattice.pitch, lattice.size, samples);
+            tiles.fill(simd, folded, radius, lattice, samples);
         });
         let hidden = (HIDDEN / levels).clamp(HIDDEN, 1.0) as f32;
         let tube = &mut self.tube;
