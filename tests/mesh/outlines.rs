@@ -312,6 +312,35 @@ fn slivers_along_a_ring_do_not_use_up_the_rounds() {
     keeps("comb", &light.cast(&comb, 1.0, 0.0).unwrap(), 2.0);
 }
 
+/// The error's crest runs along triangles between two teeth, eight penumbra radii long and a fifth of one wide, from row to row of the
+/// samples that are taken there.
+#[test]
+fn crests_along_a_triangle_are_seen_between_samples() {
+    let (tooth, pitch) = (17.20951, 22.808_008);
+    let mut ring = vec![[0.0, -31.228783]];
+    for i in 0_u8..6 {
+        let x = f32::from(i) * pitch;
+        ring.extend([[x, 104.09594], [x + tooth, 104.09594]]);
+        if i < 5 {
+            ring.extend([[x + tooth, 0.0], [x + pitch, 0.0]]);
+        }
+    }
+    ring.push([5.0 * pitch + tooth, -31.228783]);
+    let comb = Shape::polygon(&[ring], FillRule::NonZero).unwrap();
+    let light = Light::directional([0.0, 0.0], 10.0).unwrap();
+    keeps("comb", &light.cast(&comb, 1.0, 0.0).unwrap(), 0.5);
+}
+
+/// The same along a bar that is narrower than the penumbra.
+#[test]
+fn crests_along_a_bar_are_seen_between_samples() {
+    let all = fixture_shadows();
+    let (name, shadow) = all.iter().find(|(name, _)| name == "sliver-h").unwrap();
+    for tolerance in TOLERANCES {
+        keeps(name, shadow, tolerance);
+    }
+}
+
 /// Found by `penumbral atlas`: so far from the origin `f32` steps are as wide as the penumbra's rings, and the mesh is a hard edge.
 #[test]
 fn a_penumbra_too_narrow_for_its_coordinates_states_what_corners_lose() {
