@@ -22,7 +22,7 @@ const GOLDEN: [(&str, u64); 11] = [
     ("points", 0xed85_f785_6936_3e8b),
     ("dithered paint", 0x1682_78f8_be90_2cd4),
     ("masks", 0x9201_b800_bdf8_a30b),
-    ("meshes", 0x225d_2ae3_4639_251f),
+    ("meshes", 0x9c80_d7ea_9403_5139),
     ("pictures", 0x6eb1_d4f7_d73a_25bd),
     ("svg", 0x47dc_6abc_7653_8a8c),
 ];

@@ -12,9 +12,10 @@ pub(super) type Weights = [f64; 3];
 /// The most samples along a side: one that is longer yet is straight for most of its length.
 const MOST: f64 = 128.0;
 
-/// Triangles of more steps along their longest side than so many times the parts of a shorter one have as many times the rows: crests of the
-/// error run along them, and between the rows of a comb's triangle, eight penumbra radii by a fifth of one, a twentieth was unseen.
-const LONG: f64 = 2.0;
+/// Triangles of more steps than this along their longest side have as many rows at least, unless so few parts are asked for that nothing
+/// is to be sure of: crests of the error run along them, and between eight rows of a comb's triangle, eight penumbra radii by a
+/// fifth of one, a twentieth was unseen.
+const LONG: f64 = 16.0;
 
 /// How often the way up is looked for from a sample: tops are parabolas, and a step short of one is wrong by its square.
 const ROUNDS: u32 = 2;
@@ -90,8 +91,8 @@ impl Samples {
         let height = side(apex).perp_dot(at[apex] - at[from]).abs() / length;
         let parts = f64::from(parts);
         let along = ceil(length / spacing).clamp(parts, MOST.max(parts));
-        let least = if along > LONG * parts {
-            LONG * parts
+        let least = if along > LONG && 2.0 * parts >= LONG {
+            LONG.max(parts)
         } else {
             parts
         };
