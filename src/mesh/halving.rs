@@ -6,7 +6,7 @@
 //! triangles or for neither, so all meet edge to edge (Evans, Kirkpatrick & Townsend 2001, "Right-triangulated irregular
 //! networks").
 //!
-//! Neither the tangent construction nor a triangulator is needed: a mesh takes some hundred microseconds, and where detail is
+//! Neither the tangent construction nor a triangulator is needed: a mesh takes about a hundred microseconds, and where detail is
 //! small it has hardly more triangles than refinement's. Sides along the axes are [folded away](folds::Folds) where they are long;
 //! along others and about large corners there are many more triangles, so such outlines are left to refinement unless speed is
 //! asked for, and so are all that bend density between samples too much, such as a circle as large as the disc.
