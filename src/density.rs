@@ -18,6 +18,7 @@ pub(crate) mod quadrature;
 pub(crate) mod rounded;
 pub(crate) mod rows;
 mod sampling;
+pub(crate) mod tiles;
 pub(crate) mod tilted;
 
 use core::f64::consts::FRAC_PI_2;
@@ -221,6 +222,7 @@ mod tests {
 
     use super::*;
     use crate::light::Light;
+    use crate::mesh::{MeshBuffers, MeshOptions, MeshVertex};
     use crate::paint::Paint;
     use crate::path::{FillRule, Path};
     use crate::shape::Shape;
@@ -317,6 +319,23 @@ mod tests {
                         "{method:?}, r {radius}"
                     );
                 }
+                let options = MeshOptions::new(Tolerance::ONE_LEVEL).quick();
+                let meshes = levels.iter().map(|level| {
+                    let mut scratch = Scratch::at_level(*level);
+                    let mut mesh = MeshBuffers::<u32>::new();
+                    shadow.mesh_into(&mut mesh, options, &mut scratch).unwrap();
+                    let vertex = |v: &MeshVertex| {
+                        let [x, y] = v.position;
+                        [x, y, v.density].map(f32::to_bits)
+                    };
+                    let vertices: Vec<_> = mesh.vertices.iter().map(vertex).collect();
+                    (vertices, mesh.indices)
+                });
+                let meshes: Vec<_> = meshes.collect();
+                assert!(
+                    meshes.windows(2).all(|pair| pair[0] == pair[1]),
+                    "mesh, r {radius}"
+                );
             }
         }
     }

@@ -179,18 +179,6 @@ impl Grid {
         }
     }
 
-    /// A grid of `size` pixels of side `pitch` (scene units), the first of them about a centre: no more of them than a caller
-    /// has bounded.
-    pub(crate) fn of_centers(first: DVec2, size: [u32; 2], pitch: f64) -> Self {
-        Self {
-            corner: first / pitch - 0.5,
-            width: size[0],
-            height: size[1],
-            pixels_per_unit: 1.0 / pitch,
-            stride: size[0] as usize,
-        }
-    }
-
     /// Refuses a buffer that ends before the grid does.
     pub(crate) fn check_buffer(&self, length: usize) -> Result<()> {
         let needed = self.stride * (self.height as usize - 1) + self.width as usize;

@@ -411,11 +411,25 @@ impl Shadow {
     }
 }
 
+/// Vertices nearer to one another than this, over the penumbra radius, are one: where paths cross they come twice, a rounding error apart,
+/// and the line from one to the other leads anywhere.
+const ONE_VERTEX: f64 = 1e-9;
+
 /// The circles round the vertices of an outline that is seen through one radius everywhere.
 fn projection_circles(outline: &Outline, radius: f64, flatness: f64) -> Vec<Vec<ProjectionCircle>> {
     let circle = |center| ProjectionCircle { center, radius };
-    let polygons = outline.polygons(flatness).into_iter();
+    let is_one = |a: DVec2, b: DVec2| (a - b).length() <= ONE_VERTEX * radius;
+    let mut polygons = outline.polygons(flatness);
+    for points in &mut polygons {
+        points.dedup_by(|next, point| is_one(*next, *point));
+        while let [first, .., last] = points[..]
+            && is_one(first, last)
+        {
+            points.pop();
+        }
+    }
     polygons
+        .into_iter()
         .map(|points| points.into_iter().map(circle).collect())
         .collect()
 }

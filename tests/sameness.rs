@@ -22,9 +22,9 @@ const GOLDEN: [(&str, u64); 11] = [
     ("points", 0xed85_f785_6936_3e8b),
     ("dithered paint", 0x1682_78f8_be90_2cd4),
     ("masks", 0x9201_b800_bdf8_a30b),
-    ("meshes", 0x4742_7752_35bf_718e),
+    ("meshes", 0x9c80_d7ea_9403_5139),
     ("pictures", 0x6eb1_d4f7_d73a_25bd),
-    ("svg", 0x608a_e391_8ec0_a7f2),
+    ("svg", 0x47dc_6abc_7653_8a8c),
 ];
 
 /// FNV-1a of 64 bits (Fowler, Noll & Vo 1991).

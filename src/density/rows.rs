@@ -8,8 +8,10 @@
 mod kernels;
 mod pieces;
 
-pub(crate) use kernels::{RowCircle, Wide, circle, half_disc, turns, whole_disc};
-pub(crate) use pieces::each_line;
+pub(crate) use kernels::{
+    RowCircle, Wide, circle, half_disc, half_discs, line_at, turns, whole_disc,
+};
+pub(crate) use pieces::{ERROR, arc_chord, each_line};
 
 use core::ops::Range;
 

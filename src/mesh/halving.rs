@@ -6,7 +6,7 @@
 //! triangles or for neither, so all meet edge to edge (Evans, Kirkpatrick & Townsend 2001, "Right-triangulated irregular
 //! networks").
 //!
-//! Neither the tangent construction nor a triangulator is needed: a mesh takes some hundred microseconds, and where detail is
+//! Neither the tangent construction nor a triangulator is needed: a mesh takes about a hundred microseconds, and where detail is
 //! small it has hardly more triangles than refinement's. Sides along the axes are [folded away](folds::Folds) where they are long;
 //! along others and about large corners there are many more triangles, so such outlines are left to refinement unless speed is
 //! asked for, and so are all that bend density between samples too much, such as a circle as large as the disc.
@@ -26,9 +26,8 @@ use self::halves::Halves;
 use self::tips::Tip;
 use self::tube::Tube;
 use super::{MeshOptions, MeshQuality, MeshSink, MeshVertex, Profile};
-use crate::density::{Each, PixelOptions, direct};
+use crate::density::tiles::{self, Lattice, Tiles};
 use crate::error::Result;
-use crate::grid::Grid;
 use crate::outline::{self, Edge};
 use crate::scratch::Scratch;
 use crate::shadow::Shadow;
@@ -92,6 +91,7 @@ pub(crate) struct HalvingScratch {
     /// The outline's edges without what is folded away.
     folded: Vec<Edge>,
     tips: Vec<Tip>,
+    tiles: Tiles,
     tube: Tube,
     halves: Halves,
     /// The triangles, by the samples at their corners and on which side of a cut each of these is.
@@ -102,23 +102,7 @@ pub(crate) struct HalvingScratch {
     vertices: Vec<u32>,
 }
 
-/// Where the samples are, without what is folded away.
-#[derive(Debug, Clone, Copy)]
-struct Lattice {
-    /// The first sample, in scene units, and from each to the next.
-    corner: DVec2,
-    pitch: f64,
-    /// Columns and rows of samples.
-    size: [usize; 2],
-}
-
 impl Lattice {
-    /// The pixels whose centres they are.
-    fn grid(&self) -> Grid {
-        let [columns, rows] = self.size;
-        Grid::of_centers(self.corner, [columns as u32, rows as u32], self.pitch)
-    }
-
     /// How many there are.
     fn count(&self) -> usize {
         self.size[0] * self.size[1]
@@ -242,7 +226,7 @@ impl HalvingScratch {
         shadow: &Shadow,
         levels: f64,
         lattice: &Lattice,
-        scratch: &mut Scratch,
+        scratch: &Scratch,
     ) -> f64 {
         let radius = shadow.radius();
         let end = lattice.place(lattice.size) + self.folds.offset(lattice.size, [true; 2]);
@@ -252,7 +236,7 @@ impl HalvingScratch {
         if rounding > ROUNDING_SHARE * levels {
             return f64::INFINITY;
         }
-        let unsure = SAMPLE_SHARE * levels + direct::ROUNDING + rounding;
+        let unsure = SAMPLE_SHARE * levels + tiles::ROUNDING + rounding;
         let limit = SAMPLED * (levels - unsure) / 255.0;
         tips::find(&self.folded, radius, &mut self.tips);
         let hides = |finer: f64| {
@@ -267,16 +251,16 @@ impl HalvingScratch {
             return finer;
         }
         let limit = limit as f32;
-        let grid = lattice.grid();
-        let mut samples = Each {
-            pixels: self.tube.begin(lattice.size),
-            stride: grid.stride(),
-            put: |sample: &mut f32, density: f32| *sample = density,
-        };
-        let all = PixelOptions::default();
-        let (folded, level) = (&self.folded, scratch.level());
+        let Self {
+            folded,
+            tube,
+            tiles,
+            ..
+        } = self;
+        let samples = tube.begin(lattice.size);
+        let level = scratch.level();
         dispatch!(level, simd => {
-            direct::fill(simd, folded, radius, &grid, &all, scratch, &mut samples);
+            tiles.fill(simd, folded, radius, lattice, samples);
         });
         let hidden = (HIDDEN / levels).clamp(HIDDEN, 1.0) as f32;
         let tube = &mut self.tube;
@@ -310,7 +294,7 @@ impl HalvingScratch {
         let Self { tube, halves, .. } = self;
         dispatch!(level, simd => simd.vectorize(
             #[inline(always)]
-            || halves.choose(tube),
+            || halves.choose(simd, tube),
         ));
         halves.collect(tube);
         self.unfold(lattice);

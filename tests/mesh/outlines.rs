@@ -312,6 +312,58 @@ fn slivers_along_a_ring_do_not_use_up_the_rounds() {
     keeps("comb", &light.cast(&comb, 1.0, 0.0).unwrap(), 2.0);
 }
 
+/// The error's crest runs along triangles between two teeth, eight penumbra radii long and a fifth of one wide, from row to row of the
+/// samples that are taken there.
+#[test]
+fn crests_along_a_triangle_are_seen_between_samples() {
+    let (tooth, pitch) = (17.20951, 22.808_008);
+    let mut ring = vec![[0.0, -31.228783]];
+    for i in 0_u8..6 {
+        let x = f32::from(i) * pitch;
+        ring.extend([[x, 104.09594], [x + tooth, 104.09594]]);
+        if i < 5 {
+            ring.extend([[x + tooth, 0.0], [x + pitch, 0.0]]);
+        }
+    }
+    ring.push([5.0 * pitch + tooth, -31.228783]);
+    let comb = Shape::polygon(&[ring], FillRule::NonZero).unwrap();
+    let light = Light::directional([0.0, 0.0], 10.0).unwrap();
+    keeps("comb", &light.cast(&comb, 1.0, 0.0).unwrap(), 0.5);
+}
+
+/// The same along a bar that is narrower than the penumbra.
+#[test]
+fn crests_along_a_bar_are_seen_between_samples() {
+    let all = fixture_shadows();
+    let (name, shadow) = all.iter().find(|(name, _)| name == "sliver-h").unwrap();
+    for tolerance in TOLERANCES {
+        keeps(name, shadow, tolerance);
+    }
+}
+
+/// The club of a pack of cards, as an outline drawn along: it touches itself, where a vertex comes twice, a rounding error apart.
+const CLUB: &str = "M8 1a3.25 3.25 0 0 0-3.25 3.25c0 .186 0 .29.016.41.014.12.045.27.12.527l.19.665-.692-.028a3.25 3.25 0 1 0 2.357 5.334.5.5 0 0 1 .844.518l\
+    -.003.005-.006.015-.024.055a22 22 0 0 1-.438.92 22 22 0 0 1-1.266 2.197c-.013.018-.02.05.001.09q.016.029.03.036A.04.04 0 0 0 5.9 15h\
+    4.2q.014 0 .022-.006a.1.1 0 0 0 .029-.035c.02-.04.014-.073.001-.091a23 23 0 0 1-1.704-3.117l-.024-.054-.006-.015-.002-.004a\
+    .5.5 0 0 1 .838-.524c.601.7 1.516 1.168 2.496 1.168a3.25 3.25 0 1 0-.139-6.498l-.699.03.199-.671c.14-.47.14-.745.139-.927V4.25A3.25 3.25 0 0 0 8 1m2.207 12.024c\
+    .225.405.487.848.78 1.294C11.437 15 10.975 16 10.1 16H5.9c-.876 0-1.338-1-.887-1.683.291-.442.552-.88.776-1.283a\
+    4.25 4.25 0 1 1-2.007-8.187l-.009-.064c-.023-.187-.023-.348-.023-.52V4.25a4.25 4.25 0 0 1 8.5 0c0 .14 0 .333-.04.596a\
+    4.25 4.25 0 0 1-.46 8.476 4.2 4.2 0 0 1-1.543-.298";
+
+#[test]
+fn a_vertex_that_comes_twice_is_one() {
+    let path = penumbral::Path::from_svg(CLUB).unwrap();
+    let club = Shape::path(&path, FillRule::NonZero)
+        .unwrap()
+        .transformed([1.5, 0.0, 0.0, 1.5, 0.0, 0.0])
+        .unwrap();
+    let light = Light::android(24.0).unwrap();
+    for elevation in [0.5, 0.8] {
+        let shadow = light.cast(&club, elevation, 0.0).unwrap();
+        keeps("club", &shadow, 4.0);
+    }
+}
+
 /// Found by `penumbral atlas`: so far from the origin `f32` steps are as wide as the penumbra's rings, and the mesh is a hard edge.
 #[test]
 fn a_penumbra_too_narrow_for_its_coordinates_states_what_corners_lose() {

@@ -93,7 +93,7 @@ impl<'a> SumSource<'a> {
         kept.strips
             .begin(place.first - (margin * BLOCK) as i64, blocks, full);
         let strip = |p: DVec2| DVec2::new(p.x - place.phase.x, p.y / height);
-        rows::each_line(edges, |from, to| {
+        rows::each_line(edges, rows::ERROR, |from, to| {
             kept.strips.push(strip(from * radius), strip(to * radius));
         });
         kept.strips.end();

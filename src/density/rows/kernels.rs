@@ -48,7 +48,7 @@ pub(crate) fn half_disc(t: f32) -> f32 {
 
 /// As [`half_disc`], for sixteen numbers.
 #[inline(always)]
-fn half_disc_x8<S: Simd>(simd: S, t: f32x16<S>) -> f32x16<S> {
+pub(crate) fn half_discs<S: Simd>(simd: S, t: f32x16<S>) -> f32x16<S> {
     let v = (f32x16::splat(simd, 1.0) - t.abs()).max(f32x16::splat(simd, 0.0));
     let [a, b, c, d, e] = HALF_DISC;
     let tail = v * v.sqrt() * (v * (v * (v * (v * e + d) + c) + b) + a);
@@ -86,7 +86,7 @@ fn half_disc_at<S: Simd>(simd: S, x: f32x16<S>, y: f32x16<S>) -> f32x16<S> {
 /// What of the disc lies inside of a straight border so far inside of which its middle is: the profile F.
 #[inline(always)]
 pub(crate) fn whole_disc<S: Simd>(simd: S, depth: f32x16<S>) -> f32x16<S> {
-    half_disc_x8(simd, depth) * 2.0 + 0.5
+    half_discs(simd, depth) * 2.0 + 0.5
 }
 
 /// A number that changes by the same step from pixel to pixel.
@@ -106,7 +106,7 @@ impl Ramp {
 /// A line that passes the disc's whole height: its profile is F(t) - 1/2.
 #[inline(always)]
 pub(super) fn through_line<S: Simd>(simd: S, columns: f32x16<S>, distance: Ramp) -> f32x16<S> {
-    half_disc_x8(simd, distance.at(columns)) * 2.0
+    half_discs(simd, distance.at(columns)) * 2.0
 }
 
 /// F's second integral, from where F begins, is v^3.5 q(v) up to t = 0, v = 1 - |t|: a minimax fit of q, within 5e-10.
@@ -234,12 +234,29 @@ pub(super) struct RowLine {
 
 #[inline(always)]
 pub(super) fn line<S: Simd>(simd: S, columns: f32x16<S>, line: &RowLine) -> f32x16<S> {
-    let zero = f32x16::splat(simd, 0.0);
-    let one = f32x16::splat(simd, 1.0);
-    let [along_x, along_y] = line.along;
     let distance = line.distance.at(columns);
     let start = line.start.at(columns);
-    let end = start + line.length;
+    let halves = [
+        f32x16::splat(simd, line.halves[0]),
+        f32x16::splat(simd, line.halves[1]),
+    ];
+    line_at(simd, distance, start, line.length, line.along, halves)
+}
+
+/// A line by its signed distance and where on it its start is, counted from the foot point; `halves` are `half_disc` at its
+/// start's y and at its end's.
+#[inline(always)]
+pub(crate) fn line_at<S: Simd>(
+    simd: S,
+    distance: f32x16<S>,
+    start: f32x16<S>,
+    length: f32,
+    [along_x, along_y]: [f32; 2],
+    halves: [f32x16<S>; 2],
+) -> f32x16<S> {
+    let zero = f32x16::splat(simd, 0.0);
+    let one = f32x16::splat(simd, 1.0);
+    let end = start + length;
     let half_chord = (one - distance * distance).max(zero).sqrt();
     // The part inside the disc; where there is none, both are the end nearer to it.
     let begins = start.simd_lt(-half_chord);
@@ -248,7 +265,7 @@ pub(super) fn line<S: Simd>(simd: S, columns: f32x16<S>, line: &RowLine) -> f32x
     let last = half_chord.max(start).min(end);
     let met = first.simd_lt(last);
     let foot_x = distance * along_y;
-    let beside = one.copysign(foot_x + first * along_x) * (line.halves[1] - line.halves[0]);
+    let beside = one.copysign(foot_x + first * along_x) * (halves[1] - halves[0]);
     if !met.any_true() {
         return beside;
     }
@@ -261,12 +278,12 @@ pub(super) fn line<S: Simd>(simd: S, columns: f32x16<S>, line: &RowLine) -> f32x
     let mut added = inside;
     if begins.any_true() {
         let (x, y) = (foot_x - chord_x, foot_y - chord_y);
-        let before = (half_disc_at(simd, x, y) - line.halves[0]) * one.copysign(x);
+        let before = (half_disc_at(simd, x, y) - halves[0]) * one.copysign(x);
         added += begins.select(before, zero);
     }
     if goes_on.any_true() {
         let (x, y) = (foot_x + chord_x, foot_y + chord_y);
-        let after = (half_disc_at(simd, x, y) - line.halves[1]) * one.copysign(x);
+        let after = (half_disc_at(simd, x, y) - halves[1]) * one.copysign(x);
         added -= goes_on.select(after, zero);
     }
     met.select(added, beside)

@@ -75,7 +75,7 @@ impl Form {
 const LARGEST: f64 = 1024.0;
 
 /// How far lines in place of an arc may move the density: 0.1 level.
-const ERROR: f64 = 4e-4;
+pub(crate) const ERROR: f64 = 4e-4;
 
 /// Cuts edges into `pieces`, sorted by where they begin. `wide` is what pixels average over where that is more than a window.
 pub(super) fn cut(
@@ -96,7 +96,7 @@ pub(super) fn cut(
         match edge {
             Edge::Line(line) | Edge::Border(line) => push_line(line.from, line.to, pieces),
             Edge::Arc(arc) if window == Window::Square || arc.radius > LARGEST => {
-                flatten(&arc, window, |from, to| push_line(from, to, pieces));
+                flatten(&arc, window, ERROR, |from, to| push_line(from, to, pieces));
             }
             Edge::Arc(arc) => push_arc(&arc, first, pieces),
         }
@@ -112,12 +112,17 @@ pub(super) fn cut(
     });
 }
 
-/// Calls `line` with the lines that edges are drawn as, in units of the penumbra radius.
-pub(crate) fn each_line(edges: impl Iterator<Item = Edge>, mut line: impl FnMut(DVec2, DVec2)) {
+/// Calls `line` with the lines that edges are drawn as, in units of the penumbra radius. Those in place of an arc may move the density by
+/// `error`.
+pub(crate) fn each_line(
+    edges: impl Iterator<Item = Edge>,
+    error: f64,
+    mut line: impl FnMut(DVec2, DVec2),
+) {
     for edge in edges {
         match edge {
             Edge::Line(straight) | Edge::Border(straight) => line(straight.from, straight.to),
-            Edge::Arc(arc) => flatten(&arc, Window::Disc, &mut line),
+            Edge::Arc(arc) => flatten(&arc, Window::Disc, error, &mut line),
         }
     }
 }
@@ -238,17 +243,29 @@ fn extreme(arc: &Arc, angle: f64) -> DVec2 {
     arc.center + direction * arc.radius
 }
 
-/// Cuts an arc into pieces, each replaced by the two lines that enclose as much: what a window sees wholly is exact, and
-/// only where it cuts a piece is there an error. With a piece's chord c and sagitta s that is 0.0247 s c for each of the two
-/// cut, 0.049 c³ / (8 radius) for both, and no more than s / 3 along the window's width.
-fn flatten(arc: &Arc, window: Window, mut line: impl FnMut(DVec2, DVec2)) {
+/// The chord of the pieces that an arc is cut into, of which one may move a disc's density by `error`; in units of the disc's radius.
+///
+/// Each is replaced by the two lines that enclose as much: what a window sees wholly is exact, and only where it cuts a piece is
+/// there an error. With a piece's chord c and sagitta s that is 0.0247 s c for each of the two cut, 0.049 c³ / (8 radius) for both,
+/// and no more than s / 3 along the window's width.
+pub(crate) fn arc_chord(radius: f64, error: f64) -> f64 {
+    chord_of_area(radius, error * PI)
+}
+
+/// The same for an area.
+fn chord_of_area(radius: f64, area: f64) -> f64 {
+    let by_area = libm::cbrt(area * 8.0 * radius / 0.049);
+    let by_width = (24.0 * area / 2.0 * radius).sqrt();
+    by_area.min(2.0).max(by_width)
+}
+
+/// Cuts an arc into pieces and each into two lines.
+fn flatten(arc: &Arc, window: Window, error: f64, mut line: impl FnMut(DVec2, DVec2)) {
     let area = match window {
         Window::Disc => PI,
         Window::Square => 1.0,
     };
-    let by_area = libm::cbrt(ERROR * area * 8.0 * arc.radius / 0.049);
-    let by_width = (24.0 * ERROR * area / 2.0 * arc.radius).sqrt();
-    let chord = by_area.min(2.0).max(by_width);
+    let chord = chord_of_area(arc.radius, error * area);
     let count = (arc.sweep.abs() * arc.radius / chord).ceil().max(2.0);
     // A chord's own segment as two lines: the triangle of its area.
     let angle = arc.sweep.abs() / count / 2.0;

@@ -1,5 +1,9 @@
 //! Which sides are halved, and the triangles that result.
 
+mod many;
+
+use fearless_simd::Simd;
+
 use super::SIDE;
 use super::tube::{Plane, Right, Tube};
 
@@ -135,7 +139,7 @@ impl Halves {
     /// Chooses the sides to halve, from the smallest up: those of triangles that leave the tube, and those of which a half is
     /// halved.
     #[inline(always)]
-    pub(super) fn choose(&mut self, tube: &Tube) {
+    pub(super) fn choose<S: Simd>(&mut self, simd: S, tube: &Tube) {
         self.size = tube.size();
         let [columns, rows] = self.size;
         for marks in [&mut self.halved, &mut self.flat] {
@@ -151,22 +155,43 @@ impl Halves {
                     self.find_flat([x, y], half / 2);
                 }
             }
-            for y in (0..rows).step_by(side) {
-                for x in (half..columns).step_by(side) {
-                    self.choose_straight(tube, [x, y], [0, 1], half);
-                }
+            match side {
+                4 => self.choose_many_straight::<S, 2>(simd, tube),
+                8 => self.choose_many_straight::<S, 4>(simd, tube),
+                _ => self.choose_each_straight(tube, half),
             }
-            for y in (half..rows).step_by(side) {
-                for x in (0..columns).step_by(side) {
-                    self.choose_straight(tube, [x, y], [1, 0], half);
-                }
-            }
-            for y in (half..rows).step_by(side) {
-                for x in (half..columns).step_by(side) {
-                    self.choose_slanted(tube, [x, y], side);
-                }
+            match side {
+                4 => self.choose_many_slanted::<S, 4>(simd, tube),
+                _ => self.choose_each_slanted(tube, side),
             }
             side *= 2;
+        }
+    }
+
+    /// Chooses for all level and upright sides of twice `half` samples.
+    #[inline(always)]
+    fn choose_each_straight(&mut self, tube: &Tube, half: usize) {
+        let [columns, rows] = self.size;
+        for y in (0..rows).step_by(2 * half) {
+            for x in (half..columns).step_by(2 * half) {
+                self.choose_straight(tube, [x, y], [0, 1], half);
+            }
+        }
+        for y in (half..rows).step_by(2 * half) {
+            for x in (0..columns).step_by(2 * half) {
+                self.choose_straight(tube, [x, y], [1, 0], half);
+            }
+        }
+    }
+
+    /// Chooses for the diagonals of all squares of `side` samples.
+    #[inline(always)]
+    fn choose_each_slanted(&mut self, tube: &Tube, side: usize) {
+        let [columns, rows] = self.size;
+        for y in (side / 2..rows).step_by(side) {
+            for x in (side / 2..columns).step_by(side) {
+                self.choose_slanted(tube, [x, y], side);
+            }
         }
     }
 
@@ -330,12 +355,22 @@ impl Halves {
     }
 }
 
-/// The halves of a square, by its middle: diagonals run between every other corner of the squares of one size.
+/// Whether a square's right angles are up and down its rising diagonal: diagonals run between every other corner of the squares of one
+/// size.
+#[inline(always)]
+fn is_rising(middle: Place, side: usize) -> bool {
+    (middle[0] / side + middle[1] / side).is_multiple_of(2)
+}
+
+/// The halves of a square, by its middle.
 #[inline(always)]
 fn in_square(middle: Place, side: usize) -> [Right; 2] {
     let half = side / 2;
-    let rising = (middle[0] / side + middle[1] / side).is_multiple_of(2);
-    let way = if rising { [1, -1] } else { [1, 1] };
+    let way = if is_rising(middle, side) {
+        [1, -1]
+    } else {
+        [1, 1]
+    };
     let back = [-way[0], -way[1]];
     let right = |way, ways| Right {
         corner: moved(middle, way, half),

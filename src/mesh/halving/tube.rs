@@ -1,8 +1,9 @@
 //! What a mesh may be at each sample.
 
+use fearless_simd::{Simd, SimdBase, f32x16};
 use glam::DVec2;
 
-use crate::density::lanes::NUMBERS;
+use crate::density::lanes::{LANES, NUMBERS};
 
 /// How far density may be off the chord between two samples, over the second differences there: where the penumbra ends between
 /// them it goes with the power 1.5 of the distance, and is off by 0.21 of the larger and 0.26 of their mean.
@@ -17,8 +18,11 @@ const BEND: usize = 3;
 /// The part of the tolerance that vertices are moved by at most.
 const BALANCED: f32 = 0.9;
 
-/// Samples that are looked at together: so many are read past the end of a row.
+/// Samples that are looked at together.
 const RUN: usize = 8;
+
+/// So many samples are read past the end of the last row, at most.
+const BEHIND: usize = 2 * LANES;
 
 /// Densities on a lattice, and the least and the largest that a mesh may have there so that it is within a tolerance at the
 /// sample and on the way to its neighbours.
@@ -108,12 +112,12 @@ impl Tube {
         }
         for (bounds, empty) in [(&mut self.least, -limit), (&mut self.most, limit)] {
             bounds.clear();
-            bounds.resize(count + RUN, empty);
+            bounds.resize(count + BEHIND, empty);
         }
         // What limit it takes at each sample.
         let bends = &mut self.balanced;
         bends.clear();
-        bends.resize(count + RUN, 0.0);
+        bends.resize(count + BEHIND, 0.0);
         for row in 1..rows - 1 {
             let start = row * columns;
             let [above, here, below] = [start - columns, start, start + columns]
@@ -177,6 +181,7 @@ impl Tube {
         let [columns, rows] = self.size;
         self.balanced.clear();
         self.balanced.extend_from_slice(&self.densities);
+        self.balanced.resize(columns * rows + BEHIND, 0.0);
         let by = self.limit * BALANCED;
         for row in BEND..rows - BEND {
             let start = row * columns;
@@ -216,6 +221,25 @@ impl Tube {
     pub(super) fn excess_at(&self, density: f32, [x, y]: [usize; 2]) -> f32 {
         let sample = y * self.size[0] + x;
         (density - self.most[sample]).max(self.least[sample] - density)
+    }
+
+    /// The densities of vertices at sixteen samples in a row.
+    #[inline(always)]
+    pub(super) fn at_many<S: Simd>(&self, simd: S, sample: usize) -> f32x16<S> {
+        f32x16::from_slice(simd, &self.balanced[sample..sample + LANES])
+    }
+
+    /// How far densities are outside of the tube at sixteen samples in a row.
+    #[inline(always)]
+    pub(super) fn excess_at_many<S: Simd>(
+        &self,
+        simd: S,
+        density: f32x16<S>,
+        sample: usize,
+    ) -> f32x16<S> {
+        let most = f32x16::from_slice(simd, &self.most[sample..sample + LANES]);
+        let least = f32x16::from_slice(simd, &self.least[sample..sample + LANES]);
+        (density - most).max(least - density)
     }
 
     /// Whether the shadow reaches a triangle, as far as samples and the way to their neighbours tell.
