@@ -318,7 +318,7 @@ impl Piece {
     /// Whether another piece goes on from this one so nearly as it would itself that what pixels average over hardly shows it.
     fn goes_on(&self, next: &Self, wide: &Wide) -> bool {
         // By so many levels each a bend of the direction and of the curvature may show.
-        const SHOWN: f64 = 0.07;
+        const SHOWN: f64 = 0.15;
         let Some(((center, radius, [turn, side]), (c, r, [t, s]))) =
             self.form.circle().zip(next.form.circle())
         else {
@@ -330,16 +330,32 @@ impl Piece {
         if self.to != next.from || turn * side != t * s || !fits(self) || !fits(next) {
             return false;
         }
-        // A bend of the direction by b leaves b s² / 2 of the area up to the distance s from it, one of the curvature b s³ / 6.
+        // A row sees one of both as far beyond the bend as the windows are high: along a flat border that is far.
+        let height = if self.from.y < self.to.y {
+            reach
+        } else {
+            -reach
+        };
+        let along = |center: DVec2, radius: f64, height: f64| {
+            let turn = |y: f64| libm::asin(((y - center.y) / radius).clamp(-1.0, 1.0));
+            radius * (turn(self.to.y + height) - turn(self.to.y)).abs()
+        };
+        let far = along(center, radius, -height).max(along(c, r, height));
+        // A bend of the direction by b leaves b s² / 2 of the area up to the distance s from it, one of the curvature b s³ / 6; of
+        // that a window sees its own width.
         let seen = (PI * wide.radius * wide.radius).max(4.0 * wide.half * wide.half);
-        let shown = |area: f64| area.abs() / seen * 255.0 <= SHOWN;
+        let near = (far - 2.0 * reach).max(0.0);
+        let shown = |bend: f64, power: i32| {
+            let area = bend.abs() * (far.powi(power) - near.powi(power)) / f64::from(power);
+            area / seen * 255.0 <= SHOWN
+        };
         let spokes = [
             (self.to - center) * (turn / radius),
             (next.from - c) * (t / r),
         ];
         spokes[0].dot(spokes[1]) > 0.0
-            && shown(spokes[0].perp_dot(spokes[1]) * reach * reach / 2.0)
-            && shown((turn / radius - t / r) * reach * reach * reach / 6.0)
+            && shown(spokes[0].perp_dot(spokes[1]), 2)
+            && shown((turn / radius - t / r) / 2.0, 3)
     }
 
     #[inline(always)]
@@ -607,6 +623,11 @@ mod tests {
     /// From the x axis on, an arc about the origin and another that goes on from it: by so much larger and with its direction
     /// bent by an angle.
     fn arcs(larger: f64, bend: f64, turns: [f64; 2]) -> Vec<Piece> {
+        arcs_from(0.1, larger, bend, turns)
+    }
+
+    /// The same from another angle on.
+    fn arcs_from(begin: f64, larger: f64, bend: f64, turns: [f64; 2]) -> Vec<Piece> {
         let arc = |center: DVec2, radius: f64, start: f64, sweep: f64| Arc {
             center,
             radius,
@@ -615,8 +636,8 @@ mod tests {
             from: center + radius * DVec2::from_angle(start),
             to: center + radius * DVec2::from_angle(start + sweep),
         };
-        let first = arc(DVec2::ZERO, 30.0, 0.1, turns[0]);
-        let (radius, start) = (30.0 + larger, 0.1 + turns[0] + bend);
+        let first = arc(DVec2::ZERO, 30.0, begin, turns[0]);
+        let (radius, start) = (30.0 + larger, begin + turns[0] + bend);
         let center = first.to - radius * DVec2::from_angle(start);
         let mut next = arc(center, radius, start, turns[1]);
         next.from = first.to;
@@ -647,6 +668,15 @@ mod tests {
         // Too low to be met with one bend only.
         let pieces = arcs(0.5, 0.0, [0.3, 0.04]);
         assert_eq!(pieces[0].chain, [pieces[0].low, pieces[0].high]);
+    }
+
+    #[test]
+    fn a_bend_counts_as_far_along_a_flat_border_as_a_row_sees_it() {
+        for (start, is_one) in [(0.1, true), (0.9, false)] {
+            let pieces = arcs_from(start, 0.5, 0.0, [0.2, 0.2]);
+            let whole = [pieces[0].low, pieces[1].high];
+            assert_eq!(pieces[0].chain == whole, is_one, "{start}");
+        }
     }
 
     #[test]
