@@ -15,15 +15,15 @@ use tiny_skia::Pixmap;
 /// The hash of each group.
 const GOLDEN: [(&str, u64); 11] = [
     ("exact", 0xf8b0_4e1a_d8ba_d546),
-    ("auto", 0xbebe_86a1_c7a1_94a6),
-    ("direct", 0x785a_ef7b_7a6d_28ed),
-    ("grid", 0xd1a9_d25d_379c_caf3),
-    ("nine-patch", 0xb167_ec38_b62d_4a9a),
+    ("auto", 0xebeb_2773_0eeb_a9bf),
+    ("direct", 0xa011_79eb_3d2d_4b02),
+    ("grid", 0xc26d_2bd6_ec20_d424),
+    ("nine-patch", 0x7c1e_b864_ab90_e5fb),
     ("points", 0xed85_f785_6936_3e8b),
-    ("dithered paint", 0x1682_78f8_be90_2cd4),
-    ("masks", 0x9201_b800_bdf8_a30b),
+    ("dithered paint", 0xf26d_571f_9a9f_b22a),
+    ("masks", 0xdc22_2a87_2dbc_a9ee),
     ("meshes", 0x9c80_d7ea_9403_5139),
-    ("pictures", 0x6eb1_d4f7_d73a_25bd),
+    ("pictures", 0x28ba_2b1e_32bc_e208),
     ("svg", 0x47dc_6abc_7653_8a8c),
 ];
 
