@@ -9,7 +9,7 @@ use glam::DVec2;
 
 use super::frame::Frame;
 use super::lanes::{LANES, lanes};
-use super::rows::{self, RowCircle};
+use super::rows::{self, Power, RowCircle};
 use super::{PixelOptions, Sink, seen_columns};
 use crate::grid::Grid;
 use crate::scratch::Scratch;
@@ -60,8 +60,11 @@ pub(crate) fn fill<S: Simd>(
                 let part = within(&side);
                 if !part.is_empty() {
                     // From the side's own beginning on, so that what else is drawn changes nothing.
-                    let first = DVec2::new(side.start as f64 - center.x, down) / radius;
-                    let circle = seen_from(first, ratio, 1.0 / radius);
+                    let seen = DVec2::new(center.x - side.start as f64, -down) / radius;
+                    let circle = RowCircle {
+                        power: Power::of(seen, ratio, 1.0 / radius),
+                        radius: ratio as f32,
+                    };
                     let skipped = (part.start - side.start) as usize;
                     let count = (part.end - part.start) as usize;
                     values.resize(count.next_multiple_of(LANES), 0.0);
@@ -70,19 +73,6 @@ pub(crate) fn fill<S: Simd>(
                 }
             }
         }
-    }
-}
-
-/// A circle about the origin, seen from a row of pixels the first of which is there, so far from each other.
-fn seen_from(first: DVec2, radius: f64, pitch: f64) -> RowCircle {
-    RowCircle {
-        power: [
-            // A difference of squares taken in single precision would have no digits left.
-            (first.x * first.x + (first.y - radius) * (first.y + radius)) as f32,
-            (2.0 * first.x * pitch) as f32,
-            (pitch * pitch) as f32,
-        ],
-        radius: radius as f32,
     }
 }
 

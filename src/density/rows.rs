@@ -5,12 +5,14 @@
 //! constant, and steps between. The steps are whole numbers that cancel along a closed loop: outside of the shadow the
 //! density is 0 and in the umbra 1, exactly, however many pieces there are.
 
+mod arcs;
+mod chains;
 mod kernels;
 mod pieces;
+mod seen;
 
-pub(crate) use kernels::{
-    RowCircle, Wide, circle, half_disc, half_discs, line_at, turns, whole_disc,
-};
+pub(crate) use arcs::{Power, RowCircle, circle};
+pub(crate) use kernels::{Wide, half_disc, half_discs, line_at, turns, whole_disc};
 pub(crate) use pieces::{ERROR, arc_chord, each_line};
 
 use core::ops::Range;
@@ -21,8 +23,10 @@ use glam::DVec2;
 use super::Sink;
 use super::lanes::{LANES, lanes};
 use crate::outline::Edge;
-use kernels::{Ramp, RowArc, RowCut, RowLine, WideArc, WideLine};
-use pieces::{Passing, Piece};
+use arcs::RowArc;
+use chains::Passing;
+use kernels::{Ramp, RowCut, RowLine, WideArc, WideLine};
+use pieces::Piece;
 
 /// What a density is the average over.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -476,15 +480,15 @@ impl Stroke<'_> {
             ),
             RowForm::ThroughArc(arc) => add!(
                 #[inline(always)]
-                |columns| kernels::through_arc(simd, columns, &arc)
+                |columns| arcs::through_arc(simd, columns, &arc)
             ),
             RowForm::LongArc(arc) => add!(
                 #[inline(always)]
-                |columns| kernels::long_arc(simd, columns, &arc)
+                |columns| arcs::long_arc(simd, columns, &arc)
             ),
             RowForm::Arc(arc) => add!(
                 #[inline(always)]
-                |columns| kernels::arc(simd, columns, &arc)
+                |columns| arcs::arc(simd, columns, &arc)
             ),
             RowForm::Cut(cut) => add!(
                 #[inline(always)]

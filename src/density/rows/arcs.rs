@@ -1,0 +1,376 @@
+//! What an arc adds to the densities of sixteen pixels of a row at once, and what discs have of a whole circle: by where the two
+//! circles cross.
+
+use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, f32x16, mask32x16};
+use glam::DVec2;
+
+use super::kernels::{FRAC_1_PI, Ramp, half_disc_at};
+
+/// asin t - t sqrt(1 - t²) = t³ p(t²) up to t = sqrt(1/2): a minimax fit of p, within 1e-6. It is half of a circular
+/// segment's area over its squared radius, t half of its chord over the radius.
+const SEGMENT: [f32; 5] = [
+    0.666_950_5,
+    0.193_937_35,
+    0.151_199_71,
+    -0.068_558_15,
+    0.225_219_19,
+];
+
+/// The power of a row's pixels with respect to a circle (Steiner 1826): the squared distance from its centre less its squared radius.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Power {
+    start: f32,
+    slope: f32,
+    curvature: f32,
+}
+
+impl Power {
+    /// For a circle whose centre is there from the row's first pixel; from one pixel to the next by so much.
+    #[inline(always)]
+    pub(crate) fn of(center: DVec2, radius: f64, pitch: f64) -> Self {
+        // A difference of squares taken in single precision would have no digits left.
+        let power = center.x * center.x + (center.y - radius) * (center.y + radius);
+        Self {
+            start: power as f32,
+            slope: (-2.0 * center.x * pitch) as f32,
+            curvature: (pitch * pitch) as f32,
+        }
+    }
+
+    #[inline(always)]
+    fn at<S: Simd>(self, columns: f32x16<S>) -> f32x16<S> {
+        columns * (columns * self.curvature + self.slope) + self.start
+    }
+}
+
+/// An arc along which y only rises or only falls, seen from a row of pixels.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct RowArc {
+    pub(super) center: Ramp,
+    pub(super) center_y: f32,
+    pub(super) radius: f32,
+    pub(super) power: Power,
+    /// 1 where it turns from the x axis to the y axis, else -1.
+    pub(super) turn: f32,
+    /// 1 where it lies right of its centre, else -1.
+    pub(super) side: f32,
+    /// Its ends, x counted from its centre, and how far right or left of the pixel they may be inside the disc.
+    pub(super) from: [f32; 3],
+    pub(super) to: [f32; 3],
+    /// The x, counted from its centre, of a point of it within the disc's height.
+    pub(super) middle: f32,
+    /// `half_disc` at its start's y and at its end's.
+    pub(super) halves: [f32; 2],
+    /// The area between the whole arc and its chord, over π.
+    pub(super) segment: f32,
+}
+
+/// The area between an arc and its chord, over π, for half of the chord and the square of that.
+#[inline(always)]
+fn segment<S: Simd>(simd: S, half_chord: f32x16<S>, squared: f32x16<S>, radius: f32) -> f32x16<S> {
+    let t2 = (squared * (1.0 / (radius * radius))).min(f32x16::splat(simd, 0.5));
+    let [a, b, c, d, e] = SEGMENT;
+    let p = t2 * (t2 * (t2 * (t2 * e + d) + c) + b) + a;
+    squared * half_chord * p * (FRAC_1_PI / radius)
+}
+
+/// The area between an arc and its chord, over π, for the squared chord.
+pub(super) fn segment_of(squared_chord: f32, radius: f32) -> f32 {
+    let t2 = (squared_chord * (0.25 / (radius * radius))).min(0.5);
+    let [a, b, c, d, e] = SEGMENT;
+    let p = a + t2 * (b + t2 * (c + t2 * (d + t2 * e)));
+    squared_chord * squared_chord.sqrt() * p * (0.125 * FRAC_1_PI / radius)
+}
+
+/// Where the arc's circle crosses the disc's: at one base and as far from it on both sides.
+struct Crossings<S: Simd> {
+    base: [f32x16<S>; 2],
+    aside: [f32x16<S>; 2],
+    /// The squared distance of the two centres, 1 over it, and the squared distance of both points over it, where there are any.
+    distance: f32x16<S>,
+    inverse: f32x16<S>,
+    squared: f32x16<S>,
+}
+
+impl<S: Simd> Crossings<S> {
+    #[inline(always)]
+    fn find(simd: S, columns: f32x16<S>, arc: &RowArc) -> Self {
+        let center_x = arc.center.at(columns);
+        // At `toward` of the way to the arc's centre.
+        let power = arc.power.at(columns);
+        // Of the centre's own coordinates, so that both points lie on the disc's circle however near to each other the centres
+        // are.
+        let distance = center_x * center_x + arc.center_y * arc.center_y;
+        let inverse = f32x16::splat(simd, 1.0) / distance.max(f32x16::splat(simd, 1e-12));
+        let toward = (power + 1.0) * 0.5 * inverse;
+        let squared = inverse - toward * toward;
+        let aside = squared.max(f32x16::splat(simd, 0.0)).sqrt() * arc.turn;
+        Self {
+            base: [toward * center_x, toward * arc.center_y],
+            aside: [aside * arc.center_y, aside * center_x],
+            distance,
+            inverse,
+            squared,
+        }
+    }
+
+    /// Where the arc enters the disc.
+    #[inline(always)]
+    fn enter(&self) -> [f32x16<S>; 2] {
+        [self.base[0] - self.aside[0], self.base[1] + self.aside[1]]
+    }
+
+    /// Where the arc leaves the disc.
+    #[inline(always)]
+    fn leave(&self) -> [f32x16<S>; 2] {
+        [self.base[0] + self.aside[0], self.base[1] - self.aside[1]]
+    }
+}
+
+/// What an arc adds that runs inside from one point to another.
+#[inline(always)]
+fn inside<S: Simd>(simd: S, from: [f32x16<S>; 2], to: [f32x16<S>; 2], arc: &RowArc) -> f32x16<S> {
+    let (chord_x, chord_y) = (to[0] - from[0], to[1] - from[1]);
+    let squared = (chord_x * chord_x + chord_y * chord_y) * 0.25;
+    (from[0] + to[0]) * chord_y * (0.5 * FRAC_1_PI)
+        + segment(simd, squared.sqrt(), squared, arc.radius) * arc.turn
+}
+
+/// The disc's half at a crossing less that at the height of the arc's end beyond, on the side of the disc where this part is.
+#[inline(always)]
+fn beyond<S: Simd>(simd: S, [x, y]: [f32x16<S>; 2], end: f32x16<S>, half: f32x16<S>) -> f32x16<S> {
+    (half_disc_at(simd, x, y) - half) * f32x16::splat(simd, 1.0).copysign(x + end)
+}
+
+/// Whether the circles cross within the arc, where neither of its ends is inside: at the first point it enters, at the second it
+/// leaves, in this order or not.
+#[inline(always)]
+fn crosses<S: Simd>(
+    simd: S,
+    center_x: f32x16<S>,
+    crossings: &Crossings<S>,
+    [enter, leave]: [[f32x16<S>; 2]; 2],
+    arc: &RowArc,
+) -> mask32x16<S> {
+    // How far beyond its ends a point may seem to lie that rounding has moved there, and the more of it the nearer the two
+    // centres are: over their squared distance.
+    const SLACK: f32 = 1e-5;
+    const SLACK_NEAR: f32 = 1e-9;
+    // Order along the arc is order along y.
+    let rise = arc.rise();
+    let (enters, leaves) = (enter[1] * rise, leave[1] * rise);
+    let slack = crossings.inverse * SLACK_NEAR + SLACK;
+    let beside = center_x * arc.side - slack;
+    (enter[0] * arc.side).simd_ge(beside)
+        & (leave[0] * arc.side).simd_ge(beside)
+        & enters.min(leaves).simd_ge(-slack + arc.from[1] * rise)
+        & enters.max(leaves).simd_le(slack + arc.to[1] * rise)
+        & crossings.squared.simd_gt(f32x16::splat(simd, 0.0))
+}
+
+impl RowArc {
+    /// 1 where y rises along it, else -1.
+    #[inline(always)]
+    fn rise(&self) -> f32 {
+        if self.to[1] < self.from[1] { -1.0 } else { 1.0 }
+    }
+
+    /// The x of an end if it is as high as the disc, or 0: a crossing beside it may be at the disc's top, where rounding decides on
+    /// which side it is.
+    #[inline(always)]
+    fn seen_end<S: Simd>(&self, simd: S, end: usize, x: f32x16<S>) -> f32x16<S> {
+        let [.., width] = [self.from, self.to][end];
+        if width > 0.0 {
+            x
+        } else {
+            f32x16::splat(simd, 0.0)
+        }
+    }
+
+    /// What it adds where all of it is inside.
+    #[inline(always)]
+    fn whole<S: Simd>(&self, from_x: f32x16<S>, to_x: f32x16<S>) -> f32x16<S> {
+        let chord_y = (self.to[1] - self.from[1]) * (0.5 * FRAC_1_PI);
+        (from_x + to_x) * chord_y + self.segment * self.turn
+    }
+
+    /// What it adds where nothing of it is inside.
+    #[inline(always)]
+    fn missed<S: Simd>(&self, simd: S, center_x: f32x16<S>) -> f32x16<S> {
+        let side = f32x16::splat(simd, 1.0).copysign(center_x + self.middle);
+        side * (self.halves[1] - self.halves[0])
+    }
+}
+
+/// An arc of so large a radius that it runs inside between any two of its points that are inside.
+#[inline(always)]
+pub(super) fn long_arc<S: Simd>(simd: S, columns: f32x16<S>, arc: &RowArc) -> f32x16<S> {
+    let zero = f32x16::splat(simd, 0.0);
+    let splat = |v: f32| f32x16::splat(simd, v);
+    let center_x = arc.center.at(columns);
+    let [from_x, from_y, from_width] = arc.from;
+    let [to_x, to_y, to_width] = arc.to;
+    let (from_x, to_x) = (center_x + from_x, center_x + to_x);
+    let from_in = from_x.abs().simd_lt(splat(from_width));
+    let to_in = to_x.abs().simd_lt(splat(to_width));
+    let (any_in, both_in) = (from_in | to_in, from_in & to_in);
+    if both_in.all_true() {
+        return arc.whole(from_x, to_x);
+    }
+    let crossings = Crossings::find(simd, columns, arc);
+    let (enter, leave) = (crossings.enter(), crossings.leave());
+    let rise = arc.rise();
+    let from = [from_x, splat(from_y)];
+    let to = [to_x, splat(to_y)];
+    let missed = arc.missed(simd, center_x);
+    let mut met = any_in;
+    if !any_in.all_true() {
+        let passed = !any_in
+            & crosses(simd, center_x, &crossings, [enter, leave], arc)
+            & (enter[1] * rise).simd_le(leave[1] * rise);
+        met |= passed;
+        if !met.any_true() {
+            return missed;
+        }
+        if passed.any_true() {
+            let p = select_point(from_in, from, enter);
+            let q = select_point(to_in, to, leave);
+            let before = beyond(
+                simd,
+                enter,
+                arc.seen_end(simd, 0, from_x),
+                splat(arc.halves[0]),
+            );
+            let after = beyond(
+                simd,
+                leave,
+                arc.seen_end(simd, 1, to_x),
+                splat(arc.halves[1]),
+            );
+            let outside = from_in.select(zero, before) - to_in.select(zero, after);
+            return met.select(inside(simd, p, q, arc) + outside, missed);
+        }
+    }
+    // At most one crossing, of which a disc's half need be found.
+    let crossing = select_point(from_in, leave, enter);
+    let p = select_point(from_in, from, crossing);
+    let q = select_point(to_in, to, crossing);
+    let end = from_in.select(arc.seen_end(simd, 1, to_x), arc.seen_end(simd, 0, from_x));
+    let half = from_in.select(splat(arc.halves[1]), splat(arc.halves[0]));
+    let outside = beyond(simd, crossing, end, half);
+    let outside = both_in.select(zero, from_in.select(-outside, outside));
+    met.select(inside(simd, p, q, arc) + outside, missed)
+}
+
+/// One of two points, lane by lane.
+#[inline(always)]
+fn select_point<S: Simd>(
+    mask: mask32x16<S>,
+    [x, y]: [f32x16<S>; 2],
+    [other_x, other_y]: [f32x16<S>; 2],
+) -> [f32x16<S>; 2] {
+    [mask.select(x, other_x), mask.select(y, other_y)]
+}
+
+#[inline(always)]
+pub(super) fn arc<S: Simd>(simd: S, columns: f32x16<S>, arc: &RowArc) -> f32x16<S> {
+    // An arc so near to the disc's own circle lies on it: where they cross is a matter of rounding.
+    const SAME: f32 = 1e-4;
+    let zero = f32x16::splat(simd, 0.0);
+    let one = f32x16::splat(simd, 1.0);
+    let splat = |v: f32| f32x16::splat(simd, v);
+    let center_x = arc.center.at(columns);
+    let [from_x, from_y, from_width] = arc.from;
+    let [to_x, to_y, to_width] = arc.to;
+    let (from_x, to_x) = (center_x + from_x, center_x + to_x);
+    let from_in = from_x.abs().simd_lt(splat(from_width));
+    let to_in = to_x.abs().simd_lt(splat(to_width));
+    let crossings = Crossings::find(simd, columns, arc);
+    let (enter, leave) = (crossings.enter(), crossings.leave());
+    let crossed = crosses(simd, center_x, &crossings, [enter, leave], arc);
+    let rise = arc.rise();
+    let (enters, leaves) = (enter[1] * rise, leave[1] * rise);
+    let notched = from_in & to_in & crossed & leaves.simd_lt(enters);
+    let same = (SAME - (arc.radius - 1.0).abs()).max(0.0);
+    let met = (from_in | to_in | (crossed & enters.simd_le(leaves)))
+        & crossings.distance.simd_ge(splat(same * same));
+
+    // From p to q it runs inside; or, where notched, all but from p to q.
+    let p = [
+        notched.select(leave[0], from_in.select(from_x, enter[0])),
+        notched.select(leave[1], from_in.select(splat(from_y), enter[1])),
+    ];
+    let q = [
+        notched.select(enter[0], to_in.select(to_x, leave[0])),
+        notched.select(enter[1], to_in.select(splat(to_y), leave[1])),
+    ];
+    let inside = inside(simd, p, q, arc);
+    let before = beyond(
+        simd,
+        enter,
+        arc.seen_end(simd, 0, from_x),
+        splat(arc.halves[0]),
+    );
+    let after = beyond(
+        simd,
+        leave,
+        arc.seen_end(simd, 1, to_x),
+        splat(arc.halves[1]),
+    );
+    let added = inside + from_in.select(zero, before) - to_in.select(zero, after);
+    let notch = half_disc_at(simd, enter[0], enter[1]) - half_disc_at(simd, leave[0], leave[1]);
+    let but_notch = arc.whole(from_x, to_x) - inside + notch * one.copysign(crossings.base[0]);
+    met.select(notched.select(but_notch, added), arc.missed(simd, center_x))
+}
+
+/// An arc that passes the disc's whole height: the disc's part beyond the two circles' common chord, and the arc's own
+/// beyond that.
+#[inline(always)]
+pub(super) fn through_arc<S: Simd>(simd: S, columns: f32x16<S>, arc: &RowArc) -> f32x16<S> {
+    let zero = f32x16::splat(simd, 0.0);
+    let area = of_large_circle(simd, arc.power.at(columns), arc.radius);
+    // On the centre's other side it is the circle's other half that a disc may meet.
+    let beyond = (arc.center.at(columns) * arc.side).simd_ge(zero);
+    beyond.select(f32x16::splat(simd, 0.5), area) * arc.turn
+}
+
+/// What the disc has of a circle larger than it, less a half: its part beyond the two circles' common chord, and the circle's own
+/// beyond that. `power` is the centre's squared distance less the squared radius.
+#[inline(always)]
+fn of_large_circle<S: Simd>(simd: S, power: f32x16<S>, radius: f32) -> f32x16<S> {
+    let (zero, one) = (f32x16::splat(simd, 0.0), f32x16::splat(simd, 1.0));
+    let far = (power + radius * radius).max(zero).sqrt();
+    let reach = ((power + 1.0) / (far * 2.0)).max(-one).min(one);
+    let squared = (one - reach * reach).max(zero);
+    let half_chord = squared.sqrt();
+    segment(simd, half_chord, squared, radius) - half_disc_at(simd, half_chord, reach) * 2.0
+}
+
+/// A circle, seen from a row of pixels.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RowCircle {
+    pub(crate) power: Power,
+    pub(crate) radius: f32,
+}
+
+/// What discs have of a circle.
+#[inline(always)]
+pub(crate) fn circle<S: Simd>(simd: S, columns: f32x16<S>, circle: &RowCircle) -> f32x16<S> {
+    let (zero, one) = (f32x16::splat(simd, 0.0), f32x16::splat(simd, 1.0));
+    let (radius, power) = (circle.radius, circle.power.at(columns));
+    let density = if radius >= core::f32::consts::SQRT_2 {
+        of_large_circle(simd, power, radius) + 0.5
+    } else {
+        // What either has beyond the common chord.
+        let squared = (power + radius * radius).max(f32x16::splat(simd, 1e-12));
+        let scale = f32x16::splat(simd, 0.5) / squared.sqrt();
+        let beyond = |chord: f32x16<S>| {
+            let chord = chord.max(-one).min(one);
+            let half = (one - chord * chord).max(zero).sqrt();
+            f32x16::splat(simd, 0.5) - half_disc_at(simd, half, chord) * 2.0
+        };
+        let own = (power + 2.0 * radius * radius - 1.0) * scale / radius;
+        beyond((power + 1.0) * scale) + beyond(own) * (radius * radius)
+    };
+    density.max(zero).min(one)
+}
