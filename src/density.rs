@@ -141,7 +141,12 @@ fn draw_part(
             let radius = shadow.radius() * per_unit;
             let sums =
                 method == Method::Grid && grid::suits(radius, levels, shadow.extent() * per_unit);
-            let curves = if sums { CURVES } else { direct::curves(radius) };
+            // An outline that is kept is the same for both methods.
+            let curves = if sums || !shadow.has_simple_curves() {
+                CURVES
+            } else {
+                direct::curves(radius)
+            };
             let mut edges = scratch.take();
             shadow.arcs_into(curves * levels, 1.0 / per_unit, &mut edges);
             if sums {

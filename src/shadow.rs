@@ -429,7 +429,7 @@ impl Shadow {
     }
 
     /// Whether its curves need no fill rule.
-    fn has_simple_curves(&self) -> bool {
+    pub(crate) fn has_simple_curves(&self) -> bool {
         let simple =
             |group: &Vec<Shape>| matches!(group.as_slice(), [only] if only.cover == Cover::Simple);
         self.curved.iter().all(simple)

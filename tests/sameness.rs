@@ -15,15 +15,15 @@ use tiny_skia::Pixmap;
 /// The hash of each group.
 const GOLDEN: [(&str, u64); 11] = [
     ("exact", 0xf8b0_4e1a_d8ba_d546),
-    ("auto", 0xebeb_2773_0eeb_a9bf),
-    ("direct", 0xa011_79eb_3d2d_4b02),
-    ("grid", 0xc26d_2bd6_ec20_d424),
-    ("nine-patch", 0x7c1e_b864_ab90_e5fb),
+    ("auto", 0x158e_a3b4_be8f_8f9b),
+    ("direct", 0xbc71_f10e_7f34_6108),
+    ("grid", 0xfd65_2908_fd80_b1e0),
+    ("nine-patch", 0xea05_4490_ec82_1ec5),
     ("points", 0xed85_f785_6936_3e8b),
-    ("dithered paint", 0xf26d_571f_9a9f_b22a),
+    ("dithered paint", 0x3406_3f8f_f11f_c976),
     ("masks", 0xdc22_2a87_2dbc_a9ee),
     ("meshes", 0x9c80_d7ea_9403_5139),
-    ("pictures", 0x28ba_2b1e_32bc_e208),
+    ("pictures", 0x849b_bce3_4025_ce19),
     ("svg", 0x47dc_6abc_7653_8a8c),
 ];
 
