@@ -257,8 +257,7 @@ impl Hidden {
 /// size.
 const LARGEST_CARD: f64 = 1e5;
 
-/// How far lines in place of curves may move a pixel's coverage, in levels: by their balance of areas they are within
-/// [`inside::FLATNESS`] of curves of half a pixel's radius and more.
+/// How far lines in place of curves that need a fill rule may move a pixel's coverage, in levels: they are within [`inside::FLATNESS`].
 const CURVES: f64 = 2.0;
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ mod seen;
 
 pub(crate) use arcs::{Power, RowCircle, circle};
 pub(crate) use kernels::{Wide, half_disc, half_discs, line_at, turns, whole_disc};
-pub(crate) use pieces::{ERROR, arc_chord, each_line};
+pub(crate) use pieces::{ERROR, arc_chord, each_line, sort};
 
 use core::ops::Range;
 

@@ -13,7 +13,7 @@ use fearless_simd::{Simd, SimdBase, f32x16};
 use glam::DVec2;
 
 use super::lanes::LANES;
-use super::rows::{arc_chord, each_line, half_discs, line_at};
+use super::rows::{self, arc_chord, each_line, half_discs, line_at};
 use crate::outline::Edge;
 
 /// Samples along a tile's sides.
@@ -124,14 +124,7 @@ impl Tiles {
             let edge = edge.mapped(scale, place);
             each_line(once(edge), share(&edge), &mut push);
         }
-        // By all that tells them apart: the order of sums is the same wherever loops begin.
-        let key = |p: &Piece| [p.low, p.high, p.from.x, p.to.x];
-        self.pieces.sort_unstable_by(|a, b| {
-            let pairs = key(a).into_iter().zip(key(b));
-            pairs.fold(core::cmp::Ordering::Equal, |order, (a, b)| {
-                order.then(a.total_cmp(&b))
-            })
-        });
+        rows::sort(&mut self.pieces, |p| [p.low, p.high, p.from.x, p.to.x]);
     }
 
     /// Puts the densities of an outline at all samples of a lattice, row by row. Its columns and rows are multiples of a tile's side and one

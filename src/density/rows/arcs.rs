@@ -136,12 +136,6 @@ fn inside<S: Simd>(simd: S, from: [f32x16<S>; 2], to: [f32x16<S>; 2], arc: &RowA
         + segment(simd, squared.sqrt(), squared, arc.radius) * arc.turn
 }
 
-/// The disc's half at a crossing less that at the height of the arc's end beyond, on the side of the disc where this part is.
-#[inline(always)]
-fn beyond<S: Simd>(simd: S, [x, y]: [f32x16<S>; 2], end: f32x16<S>, half: f32x16<S>) -> f32x16<S> {
-    (half_disc_at(simd, x, y) - half) * f32x16::splat(simd, 1.0).copysign(x + end)
-}
-
 /// Whether the circles cross within the arc, where neither of its ends is inside: at the first point it enters, at the second it
 /// leaves, in this order or not.
 #[inline(always)]
@@ -175,16 +169,13 @@ impl RowArc {
         if self.to[1] < self.from[1] { -1.0 } else { 1.0 }
     }
 
-    /// The x of an end if it is as high as the disc, or 0: a crossing beside it may be at the disc's top, where rounding decides on
-    /// which side it is.
+    /// The arc's two ends, and which of them are inside.
     #[inline(always)]
-    fn seen_end<S: Simd>(&self, simd: S, end: usize, x: f32x16<S>) -> f32x16<S> {
-        let [.., width] = [self.from, self.to][end];
-        if width > 0.0 {
-            x
-        } else {
-            f32x16::splat(simd, 0.0)
-        }
+    fn ends<S: Simd>(&self, simd: S, center_x: f32x16<S>) -> [End<S>; 2] {
+        [
+            End::seen(simd, center_x, self.from, self.halves[0]),
+            End::seen(simd, center_x, self.to, self.halves[1]),
+        ]
     }
 
     /// What it adds where all of it is inside.
@@ -202,26 +193,51 @@ impl RowArc {
     }
 }
 
+/// An end of an arc, as a row sees it.
+struct End<S: Simd> {
+    point: [f32x16<S>; 2],
+    is_in: mask32x16<S>,
+    /// Its x if it is as high as the disc, or 0: a crossing beside it may be at the disc's top, where rounding decides on which side it
+    /// is.
+    seen_x: f32x16<S>,
+    /// `half_disc` at its y.
+    half: f32x16<S>,
+}
+
+impl<S: Simd> End<S> {
+    #[inline(always)]
+    fn seen(simd: S, center_x: f32x16<S>, [x, y, width]: [f32; 3], half: f32) -> Self {
+        let splat = |v: f32| f32x16::splat(simd, v);
+        let x = center_x + x;
+        Self {
+            point: [x, splat(y)],
+            is_in: x.abs().simd_lt(splat(width)),
+            seen_x: if width > 0.0 { x } else { splat(0.0) },
+            half: splat(half),
+        }
+    }
+
+    /// The disc's half at a crossing less that at the height of this end beyond, on the side of the disc where this part is.
+    #[inline(always)]
+    fn beyond(&self, simd: S, [x, y]: [f32x16<S>; 2]) -> f32x16<S> {
+        let side = f32x16::splat(simd, 1.0).copysign(x + self.seen_x);
+        (half_disc_at(simd, x, y) - self.half) * side
+    }
+}
+
 /// An arc of so large a radius that it runs inside between any two of its points that are inside.
 #[inline(always)]
 pub(super) fn long_arc<S: Simd>(simd: S, columns: f32x16<S>, arc: &RowArc) -> f32x16<S> {
     let zero = f32x16::splat(simd, 0.0);
-    let splat = |v: f32| f32x16::splat(simd, v);
     let center_x = arc.center.at(columns);
-    let [from_x, from_y, from_width] = arc.from;
-    let [to_x, to_y, to_width] = arc.to;
-    let (from_x, to_x) = (center_x + from_x, center_x + to_x);
-    let from_in = from_x.abs().simd_lt(splat(from_width));
-    let to_in = to_x.abs().simd_lt(splat(to_width));
-    let (any_in, both_in) = (from_in | to_in, from_in & to_in);
+    let [from, to] = arc.ends(simd, center_x);
+    let (any_in, both_in) = (from.is_in | to.is_in, from.is_in & to.is_in);
     if both_in.all_true() {
-        return arc.whole(from_x, to_x);
+        return arc.whole(from.point[0], to.point[0]);
     }
     let crossings = Crossings::find(simd, columns, arc);
     let (enter, leave) = (crossings.enter(), crossings.leave());
     let rise = arc.rise();
-    let from = [from_x, splat(from_y)];
-    let to = [to_x, splat(to_y)];
     let missed = arc.missed(simd, center_x);
     let mut met = any_in;
     if !any_in.all_true() {
@@ -233,32 +249,24 @@ pub(super) fn long_arc<S: Simd>(simd: S, columns: f32x16<S>, arc: &RowArc) -> f3
             return missed;
         }
         if passed.any_true() {
-            let p = select_point(from_in, from, enter);
-            let q = select_point(to_in, to, leave);
-            let before = beyond(
-                simd,
-                enter,
-                arc.seen_end(simd, 0, from_x),
-                splat(arc.halves[0]),
-            );
-            let after = beyond(
-                simd,
-                leave,
-                arc.seen_end(simd, 1, to_x),
-                splat(arc.halves[1]),
-            );
-            let outside = from_in.select(zero, before) - to_in.select(zero, after);
-            return met.select(inside(simd, p, q, arc) + outside, missed);
+            let p = select_point(from.is_in, from.point, enter);
+            let q = select_point(to.is_in, to.point, leave);
+            let before = from.is_in.select(zero, from.beyond(simd, enter));
+            let after = to.is_in.select(zero, to.beyond(simd, leave));
+            return met.select(inside(simd, p, q, arc) + (before - after), missed);
         }
     }
     // At most one crossing, of which a disc's half need be found.
-    let crossing = select_point(from_in, leave, enter);
-    let p = select_point(from_in, from, crossing);
-    let q = select_point(to_in, to, crossing);
-    let end = from_in.select(arc.seen_end(simd, 1, to_x), arc.seen_end(simd, 0, from_x));
-    let half = from_in.select(splat(arc.halves[1]), splat(arc.halves[0]));
-    let outside = beyond(simd, crossing, end, half);
-    let outside = both_in.select(zero, from_in.select(-outside, outside));
+    let crossing = select_point(from.is_in, leave, enter);
+    let p = select_point(from.is_in, from.point, crossing);
+    let q = select_point(to.is_in, to.point, crossing);
+    let end = End {
+        seen_x: from.is_in.select(to.seen_x, from.seen_x),
+        half: from.is_in.select(to.half, from.half),
+        ..from
+    };
+    let outside = end.beyond(simd, crossing);
+    let outside = both_in.select(zero, from.is_in.select(-outside, outside));
     met.select(inside(simd, p, q, arc) + outside, missed)
 }
 
@@ -278,48 +286,30 @@ pub(super) fn arc<S: Simd>(simd: S, columns: f32x16<S>, arc: &RowArc) -> f32x16<
     const SAME: f32 = 1e-4;
     let zero = f32x16::splat(simd, 0.0);
     let one = f32x16::splat(simd, 1.0);
-    let splat = |v: f32| f32x16::splat(simd, v);
     let center_x = arc.center.at(columns);
-    let [from_x, from_y, from_width] = arc.from;
-    let [to_x, to_y, to_width] = arc.to;
-    let (from_x, to_x) = (center_x + from_x, center_x + to_x);
-    let from_in = from_x.abs().simd_lt(splat(from_width));
-    let to_in = to_x.abs().simd_lt(splat(to_width));
+    let [from, to] = arc.ends(simd, center_x);
     let crossings = Crossings::find(simd, columns, arc);
     let (enter, leave) = (crossings.enter(), crossings.leave());
     let crossed = crosses(simd, center_x, &crossings, [enter, leave], arc);
     let rise = arc.rise();
     let (enters, leaves) = (enter[1] * rise, leave[1] * rise);
-    let notched = from_in & to_in & crossed & leaves.simd_lt(enters);
+    let notched = from.is_in & to.is_in & crossed & leaves.simd_lt(enters);
     let same = (SAME - (arc.radius - 1.0).abs()).max(0.0);
-    let met = (from_in | to_in | (crossed & enters.simd_le(leaves)))
-        & crossings.distance.simd_ge(splat(same * same));
+    let met = (from.is_in | to.is_in | (crossed & enters.simd_le(leaves)))
+        & crossings.distance.simd_ge(f32x16::splat(simd, same * same));
 
     // From p to q it runs inside; or, where notched, all but from p to q.
-    let p = [
-        notched.select(leave[0], from_in.select(from_x, enter[0])),
-        notched.select(leave[1], from_in.select(splat(from_y), enter[1])),
-    ];
-    let q = [
-        notched.select(enter[0], to_in.select(to_x, leave[0])),
-        notched.select(enter[1], to_in.select(splat(to_y), leave[1])),
-    ];
+    let p = select_point(from.is_in, from.point, enter);
+    let q = select_point(to.is_in, to.point, leave);
+    let p = select_point(notched, leave, p);
+    let q = select_point(notched, enter, q);
     let inside = inside(simd, p, q, arc);
-    let before = beyond(
-        simd,
-        enter,
-        arc.seen_end(simd, 0, from_x),
-        splat(arc.halves[0]),
-    );
-    let after = beyond(
-        simd,
-        leave,
-        arc.seen_end(simd, 1, to_x),
-        splat(arc.halves[1]),
-    );
-    let added = inside + from_in.select(zero, before) - to_in.select(zero, after);
+    let before = from.is_in.select(zero, from.beyond(simd, enter));
+    let after = to.is_in.select(zero, to.beyond(simd, leave));
+    let added = inside + before - after;
     let notch = half_disc_at(simd, enter[0], enter[1]) - half_disc_at(simd, leave[0], leave[1]);
-    let but_notch = arc.whole(from_x, to_x) - inside + notch * one.copysign(crossings.base[0]);
+    let whole = arc.whole(from.point[0], to.point[0]);
+    let but_notch = whole - inside + notch * one.copysign(crossings.base[0]);
     met.select(notched.select(but_notch, added), arc.missed(simd, center_x))
 }
 

@@ -91,7 +91,11 @@ pub(super) fn cut(
         }
     }
     close(pieces, first, wide);
-    let key = |p: &Piece| [p.low, p.high, p.from.x, p.to.x];
+    sort(pieces, |p| [p.low, p.high, p.from.x, p.to.x]);
+}
+
+/// Sorts pieces by where they begin, and by all else that tells them apart: the order of sums is the same wherever loops begin.
+pub(crate) fn sort<T>(pieces: &mut [T], key: impl Fn(&T) -> [f64; 4]) {
     pieces.sort_unstable_by(|a, b| {
         let pairs = key(a).into_iter().zip(key(b));
         pairs
