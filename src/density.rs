@@ -145,7 +145,7 @@ fn draw_part(
             let curves = if sums || !shadow.has_simple_curves() {
                 CURVES
             } else {
-                direct::curves(radius)
+                direct::curves(radius, levels)
             };
             let mut edges = scratch.take();
             shadow.arcs_into(curves * levels, 1.0 / per_unit, &mut edges);
@@ -182,6 +182,18 @@ fn seen_columns(
         }
         None => seen.push(columns.clone()),
     }
+}
+
+/// Sorts ranges and joins those that touch.
+fn join(ranges: &mut Vec<Range<i64>>) {
+    ranges.sort_unstable_by_key(|range| range.start);
+    ranges.dedup_by(|next, range| {
+        let touches = next.start <= range.end;
+        if touches {
+            range.end = range.end.max(next.end);
+        }
+        touches
+    });
 }
 
 /// How far from a curve its chords may be to move no density by more than `levels`: a strip of that width along a disc's

@@ -231,7 +231,7 @@ impl Work {
             error_levels: if self.is_averaged() {
                 direct::AVERAGED
             } else {
-                direct::curves(self.radius) * levels + direct::ROUNDING
+                direct::curves(self.radius, levels) * levels + direct::ROUNDING
             },
             cost_ns: COSTS.pixel * self.pixels
                 + (COSTS.line * self.lines + COSTS.arc * self.arcs) * self.averages(COSTS.average),

@@ -9,7 +9,7 @@ use glam::DVec2;
 use crate::compose::Fusion;
 use crate::density::grid::GridScratch;
 use crate::density::nine_patch::NinePatchScratch;
-use crate::density::rows::Rows;
+use crate::density::rows::{BAND, Bands, Rows};
 use crate::hidden::inside::Inside;
 use crate::mesh::MeshCache;
 use crate::mesh::halving::HalvingScratch;
@@ -29,6 +29,7 @@ pub struct Scratch {
     /// Vertices of one curve.
     pub(crate) vertices: Vec<DVec2>,
     pub(crate) rows: Rows,
+    pub(crate) bands: Bands,
     pub(crate) nine_patch: NinePatchScratch,
     pub(crate) grid: GridScratch,
     /// The densities of some pixels of a row.
@@ -40,6 +41,8 @@ pub struct Scratch {
     pub(crate) meshes: MeshCache,
     /// The columns of a row that are to be drawn.
     pub(crate) wanted: Vec<Range<i64>>,
+    /// The same for each row of a band.
+    pub(crate) wanted_of_rows: [Vec<Range<i64>>; BAND as usize],
 }
 
 impl Default for Scratch {
@@ -61,6 +64,7 @@ impl Scratch {
             edges: Vec::new(),
             vertices: Vec::new(),
             rows: Rows::default(),
+            bands: Bands::default(),
             nine_patch: NinePatchScratch::default(),
             grid: GridScratch::default(),
             values: Vec::new(),
@@ -69,6 +73,7 @@ impl Scratch {
             halving: HalvingScratch::default(),
             meshes: MeshCache::new(KEPT_MESHES),
             wanted: Vec::new(),
+            wanted_of_rows: Default::default(),
         }
     }
 

@@ -4,7 +4,7 @@
 
 use core::ops::Range;
 
-use fearless_simd::{Simd, SimdBase};
+use fearless_simd::{Simd, SimdBase, f32x16};
 use glam::DVec2;
 
 use super::frame::Frame;
@@ -62,7 +62,7 @@ pub(crate) fn fill<S: Simd>(
                     // From the side's own beginning on, so that what else is drawn changes nothing.
                     let seen = DVec2::new(center.x - side.start as f64, -down) / radius;
                     let circle = RowCircle {
-                        power: Power::of(seen, ratio, 1.0 / radius),
+                        power: Power::of(seen, ratio, 1.0 / radius, f32x16::splat(simd, 0.0)),
                         radius: ratio as f32,
                     };
                     let skipped = (part.start - side.start) as usize;
@@ -78,7 +78,7 @@ pub(crate) fn fill<S: Simd>(
 
 /// Computes the densities of pixels from the one `skipped` after the first on.
 #[inline(always)]
-fn fill_row<S: Simd>(simd: S, circle: &RowCircle, skipped: usize, values: &mut [f32]) {
+fn fill_row<S: Simd>(simd: S, circle: &RowCircle<S>, skipped: usize, values: &mut [f32]) {
     simd.vectorize(
         #[inline(always)]
         || {

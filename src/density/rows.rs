@@ -6,12 +6,14 @@
 //! density is 0 and in the umbra 1, exactly, however many pieces there are.
 
 mod arcs;
+mod bands;
 mod chains;
 mod kernels;
 mod pieces;
 mod seen;
 
 pub(crate) use arcs::{Power, RowCircle, circle};
+pub(crate) use bands::{BAND, Bands, to_tiles};
 pub(crate) use kernels::{Wide, half_disc, half_discs, line_at, turns, whole_disc};
 pub(crate) use pieces::{ERROR, arc_chord, each_line, sort};
 
@@ -27,6 +29,7 @@ use arcs::RowArc;
 use chains::Passing;
 use kernels::{Ramp, RowCut, RowLine, WideArc, WideLine};
 use pieces::Piece;
+use seen::View;
 
 /// What a density is the average over.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -118,19 +121,19 @@ enum Kind {
 }
 
 #[derive(Debug, Clone, Copy)]
-enum RowForm {
+enum RowForm<S: Simd> {
     /// The signed distance of a line that passes the disc's whole height.
-    ThroughLine(Ramp),
-    Line(RowLine),
+    ThroughLine(Ramp<S>),
+    Line(RowLine<S>),
     /// An arc that passes the disc's whole height.
-    ThroughArc(RowArc),
+    ThroughArc(RowArc<S>),
     /// An arc that runs inside between any two of its points that are inside.
-    LongArc(RowArc),
-    Arc(RowArc),
-    Cut(RowCut),
+    LongArc(RowArc<S>),
+    Arc(RowArc<S>),
+    Cut(RowCut<S>),
     /// A line or an arc that passes all that a pixel averages over.
-    WideLine(WideLine),
-    WideArc(WideArc),
+    WideLine(WideLine<S>),
+    WideArc(WideArc<S>),
 }
 
 /// Steps count whole units of 2^-30 of density.
@@ -375,14 +378,8 @@ impl Rows {
                     Some(_) => (&Points::CENTER, 0),
                     None => (points, entry.line as usize),
                 };
-                let stroke = Stroke {
-                    piece: &self.pieces[entry.piece as usize],
-                    lattice,
-                    halves: entry.halves,
-                    wide,
-                    line: &points.lines[line],
-                    columns: points.columns,
-                };
+                let piece = &self.pieces[entry.piece as usize];
+                let line = &points.lines[line];
                 let mut part = &mut values[place..place + strides * LANES];
                 let mut column = from;
                 // Long ones stretch by stretch, counted from where the piece begins.
@@ -390,7 +387,35 @@ impl Rows {
                     let origin = entry.first + (column - entry.first) / STRETCH * STRETCH;
                     let stop = (origin + STRETCH - column).min(part.len() as i64);
                     let (now, rest) = part.split_at_mut(stop as usize);
-                    stroke.add_to(simd, self.y, origin, (column - origin) as f32, now);
+                    let x = lattice.start + origin as f64 * lattice.pitch;
+                    let stroke = simd.vectorize(
+                        #[inline(always)]
+                        || {
+                            let view = View {
+                                simd,
+                                origin: DVec2::new(x, self.y + line.offset),
+                                down: f32x16::splat(simd, 0.0),
+                                pitch: lattice.pitch,
+                            };
+                            let halves = entry.halves.map(|half| f32x16::splat(simd, half));
+                            let form = match wide {
+                                Some(wide) => piece.seen_widely(&view, &wide),
+                                None if lattice.window == Window::Square => {
+                                    RowForm::Cut(piece.cut_from(&view))
+                                }
+                                None => piece.seen_from(&view, view.origin.y, halves),
+                            };
+                            Stroke {
+                                form,
+                                columns: lanes(simd) + (column - origin) as f32,
+                                step: LANES as f32,
+                                halves,
+                                line,
+                                points: points.columns,
+                            }
+                        },
+                    );
+                    stroke.add_to(simd, now);
                     part = rest;
                     column += stop;
                 }
@@ -433,98 +458,88 @@ impl Rows {
     }
 }
 
-/// A piece over some columns of a row.
-struct Stroke<'a> {
-    piece: &'a Piece,
-    lattice: &'a Lattice,
-    halves: [f32; 2],
-    wide: Option<Wide>,
+/// A piece over some columns.
+struct Stroke<'a, S: Simd> {
+    form: RowForm<S>,
+    /// The column of each lane, and from each vector to the next.
+    columns: f32x16<S>,
+    step: f32,
+    /// The window's half at the y of the piece's two ends.
+    halves: [f32x16<S>; 2],
     line: &'a Line,
-    columns: &'a [(f32, f32)],
+    points: &'a [(f32, f32)],
 }
 
-impl Stroke<'_> {
-    /// Adds the piece's densities to those of the row at `y`, from the column at `offset` from `origin` on.
-    fn add_to<S: Simd>(&self, simd: S, y: f64, origin: i64, offset: f32, values: &mut [f32]) {
-        let x = self.lattice.start + origin as f64 * self.lattice.pitch;
-        let seen = DVec2::new(x, y + self.line.offset);
-        let form = match &self.wide {
-            Some(wide) => self.piece.seen_widely(seen, self.lattice, wide),
-            None => self.piece.seen_from(seen, self.lattice, self.halves),
-        };
+impl<S: Simd> Stroke<'_, S> {
+    /// Adds the piece's densities to those of the columns.
+    fn add_to(&self, simd: S, values: &mut [f32]) {
         // A closure of its own for each kernel, or they would not be one loop with it.
         macro_rules! add {
             ($kernel:expr) => {
                 simd.vectorize(
                     #[inline(always)]
-                    || self.add(simd, offset, values, $kernel),
+                    || self.add(simd, values, $kernel),
                 )
             };
         }
-        match form {
+        match &self.form {
             RowForm::WideLine(line) => add!(
                 #[inline(always)]
-                |columns| kernels::wide_line(simd, columns, &line)
+                |columns| kernels::wide_line(simd, columns, line)
             ),
             RowForm::WideArc(arc) => add!(
                 #[inline(always)]
-                |columns| kernels::wide_arc(simd, columns, &arc)
+                |columns| kernels::wide_arc(simd, columns, arc)
             ),
             RowForm::ThroughLine(distance) => add!(
                 #[inline(always)]
-                |columns| kernels::through_line(simd, columns, distance)
+                |columns| kernels::through_line(simd, columns, *distance)
             ),
             RowForm::Line(line) => add!(
                 #[inline(always)]
-                |columns| kernels::line(simd, columns, &line)
+                |columns| kernels::line(simd, columns, line)
             ),
             RowForm::ThroughArc(arc) => add!(
                 #[inline(always)]
-                |columns| arcs::through_arc(simd, columns, &arc)
+                |columns| arcs::through_arc(simd, columns, arc)
             ),
             RowForm::LongArc(arc) => add!(
                 #[inline(always)]
-                |columns| arcs::long_arc(simd, columns, &arc)
+                |columns| arcs::long_arc(simd, columns, arc)
             ),
             RowForm::Arc(arc) => add!(
                 #[inline(always)]
-                |columns| arcs::arc(simd, columns, &arc)
+                |columns| arcs::arc(simd, columns, arc)
             ),
             RowForm::Cut(cut) => add!(
                 #[inline(always)]
-                |columns| kernels::cut(simd, columns, &cut)
+                |columns| kernels::cut(simd, columns, cut)
             ),
         }
     }
 
     #[inline(always)]
-    fn add<S: Simd>(
-        &self,
-        simd: S,
-        offset: f32,
-        values: &mut [f32],
-        kernel: impl Fn(f32x16<S>) -> f32x16<S>,
-    ) {
+    fn add(&self, simd: S, values: &mut [f32], kernel: impl Fn(f32x16<S>) -> f32x16<S>) {
         // What a piece adds counts from the middle between what it is far left and far right.
         let middle = self.halves[0] - self.halves[1];
         let (weight, spread) = (self.line.weight as f32, self.line.spread as f32);
-        let mut columns = lanes(simd) + offset;
-        if let [_] = self.columns {
+        let mut columns = self.columns;
+        if let [_] = self.points {
             for values in values.chunks_exact_mut(LANES) {
                 let sum = f32x16::from_slice(simd, values) + (kernel(columns) + middle);
                 sum.store_slice(values);
-                columns += LANES as f32;
+                columns += self.step;
             }
             return;
         }
         for values in values.chunks_exact_mut(LANES) {
-            let mut sum = f32x16::splat(simd, middle);
-            for (offset, share) in self.columns {
+            let mut sum = middle;
+            for (offset, share) in self.points {
                 sum += kernel(columns + *offset * spread) * *share;
             }
             let sum = f32x16::from_slice(simd, values) + sum * weight;
             sum.store_slice(values);
-            columns += LANES as f32;
+            columns += self.step;
         }
     }
 }
@@ -560,7 +575,7 @@ impl Maker<'_> {
         }
         let halves = [piece.from.y - y, piece.to.y - y].map(|rise| window.half(rise));
         let spread = line.spread * self.width * self.lattice.pitch;
-        let extent = piece.extent(y, window);
+        let extent = piece.extent([y; 2], window);
         let step = step(line, halves);
         self.push(index, number, halves, step, extent, spread);
     }

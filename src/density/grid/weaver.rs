@@ -6,7 +6,7 @@ use fearless_simd::{Select, Simd, SimdBase, SimdMask, f32x16};
 
 use super::strips::BLOCK;
 use super::sums::SumSource;
-use crate::density::{Sink, cubic};
+use crate::density::{Sink, cubic, join};
 
 /// Rows of the lattice that are kept: the four that a pixel is interpolated from, and three more on both sides to foretell
 /// them from.
@@ -53,18 +53,6 @@ pub(super) struct WovenLine {
     pub(super) weights: [f32; 4],
     pub(super) number: u32,
     pub(super) origin: i64,
-}
-
-/// Sorts ranges and joins those that touch.
-fn join(ranges: &mut Vec<Range<i64>>) {
-    ranges.sort_unstable_by_key(|range| range.start);
-    ranges.dedup_by(|next, range| {
-        let touches = next.start <= range.end;
-        if touches {
-            range.end = range.end.max(next.end);
-        }
-        touches
-    });
 }
 
 /// Goes down the lattice row by row.

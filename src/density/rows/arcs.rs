@@ -1,4 +1,4 @@
-//! What an arc adds to the densities of sixteen pixels of a row at once, and what discs have of a whole circle: by where the two
+//! What an arc adds to the densities of sixteen pixels at once, and what discs have of a whole circle: by where the two
 //! circles cross.
 
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, f32x16, mask32x16};
@@ -16,51 +16,62 @@ const SEGMENT: [f32; 5] = [
     0.225_219_19,
 ];
 
-/// The power of a row's pixels with respect to a circle (Steiner 1826): the squared distance from its centre less its squared radius.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Power {
-    start: f32,
+/// The power of pixels with respect to a circle (Steiner 1826): the squared distance from its centre less its squared radius.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Power<S: Simd> {
+    start: f32x16<S>,
     slope: f32,
     curvature: f32,
 }
 
-impl Power {
-    /// For a circle whose centre is there from the row's first pixel; from one pixel to the next by so much.
+impl<S: Simd> Power<S> {
+    /// For a circle whose centre is there from the first pixel, each lane's pixel so far `down` from that one's row; from one column to
+    /// the next by so much.
     #[inline(always)]
-    pub(crate) fn of(center: DVec2, radius: f64, pitch: f64) -> Self {
+    pub(crate) fn of(center: DVec2, radius: f64, pitch: f64, down: f32x16<S>) -> Self {
         // A difference of squares taken in single precision would have no digits left.
         let power = center.x * center.x + (center.y - radius) * (center.y + radius);
         Self {
-            start: power as f32,
+            start: down * (down - (2.0 * center.y) as f32) + power as f32,
             slope: (-2.0 * center.x * pitch) as f32,
             curvature: (pitch * pitch) as f32,
         }
     }
 
     #[inline(always)]
-    fn at<S: Simd>(self, columns: f32x16<S>) -> f32x16<S> {
+    fn at(self, columns: f32x16<S>) -> f32x16<S> {
         columns * (columns * self.curvature + self.slope) + self.start
     }
 }
 
-/// An arc along which y only rises or only falls, seen from a row of pixels.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct RowArc {
-    pub(super) center: Ramp,
-    pub(super) center_y: f32,
+/// An end of an arc: its x counted from the arc's centre, its y, and how far right or left of a pixel it may be inside the disc, which
+/// is negative where it is above or below it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ArcEnd<S: Simd> {
+    pub(super) x: f32,
+    pub(super) y: f32x16<S>,
+    pub(super) width: f32x16<S>,
+}
+
+/// An arc along which y only rises or only falls, seen from pixels.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct RowArc<S: Simd> {
+    pub(super) center: Ramp<S>,
+    pub(super) center_y: f32x16<S>,
     pub(super) radius: f32,
-    pub(super) power: Power,
+    pub(super) power: Power<S>,
     /// 1 where it turns from the x axis to the y axis, else -1.
     pub(super) turn: f32,
     /// 1 where it lies right of its centre, else -1.
     pub(super) side: f32,
-    /// Its ends, x counted from its centre, and how far right or left of the pixel they may be inside the disc.
-    pub(super) from: [f32; 3],
-    pub(super) to: [f32; 3],
+    pub(super) from: ArcEnd<S>,
+    pub(super) to: ArcEnd<S>,
+    /// 1 where y rises along it, else -1.
+    pub(super) rise: f32,
     /// The x, counted from its centre, of a point of it within the disc's height.
-    pub(super) middle: f32,
+    pub(super) middle: f32x16<S>,
     /// `half_disc` at its start's y and at its end's.
-    pub(super) halves: [f32; 2],
+    pub(super) halves: [f32x16<S>; 2],
     /// The area between the whole arc and its chord, over π.
     pub(super) segment: f32,
 }
@@ -94,7 +105,7 @@ struct Crossings<S: Simd> {
 
 impl<S: Simd> Crossings<S> {
     #[inline(always)]
-    fn find(simd: S, columns: f32x16<S>, arc: &RowArc) -> Self {
+    fn find(simd: S, columns: f32x16<S>, arc: &RowArc<S>) -> Self {
         let center_x = arc.center.at(columns);
         // At `toward` of the way to the arc's centre.
         let power = arc.power.at(columns);
@@ -129,7 +140,12 @@ impl<S: Simd> Crossings<S> {
 
 /// What an arc adds that runs inside from one point to another.
 #[inline(always)]
-fn inside<S: Simd>(simd: S, from: [f32x16<S>; 2], to: [f32x16<S>; 2], arc: &RowArc) -> f32x16<S> {
+fn inside<S: Simd>(
+    simd: S,
+    from: [f32x16<S>; 2],
+    to: [f32x16<S>; 2],
+    arc: &RowArc<S>,
+) -> f32x16<S> {
     let (chord_x, chord_y) = (to[0] - from[0], to[1] - from[1]);
     let squared = (chord_x * chord_x + chord_y * chord_y) * 0.25;
     (from[0] + to[0]) * chord_y * (0.5 * FRAC_1_PI)
@@ -144,50 +160,44 @@ fn crosses<S: Simd>(
     center_x: f32x16<S>,
     crossings: &Crossings<S>,
     [enter, leave]: [[f32x16<S>; 2]; 2],
-    arc: &RowArc,
+    arc: &RowArc<S>,
 ) -> mask32x16<S> {
     // How far beyond its ends a point may seem to lie that rounding has moved there, and the more of it the nearer the two
     // centres are: over their squared distance.
     const SLACK: f32 = 1e-5;
     const SLACK_NEAR: f32 = 1e-9;
     // Order along the arc is order along y.
-    let rise = arc.rise();
+    let rise = arc.rise;
     let (enters, leaves) = (enter[1] * rise, leave[1] * rise);
     let slack = crossings.inverse * SLACK_NEAR + SLACK;
     let beside = center_x * arc.side - slack;
     (enter[0] * arc.side).simd_ge(beside)
         & (leave[0] * arc.side).simd_ge(beside)
-        & enters.min(leaves).simd_ge(-slack + arc.from[1] * rise)
-        & enters.max(leaves).simd_le(slack + arc.to[1] * rise)
+        & enters.min(leaves).simd_ge(arc.from.y * rise - slack)
+        & enters.max(leaves).simd_le(arc.to.y * rise + slack)
         & crossings.squared.simd_gt(f32x16::splat(simd, 0.0))
 }
 
-impl RowArc {
-    /// 1 where y rises along it, else -1.
-    #[inline(always)]
-    fn rise(&self) -> f32 {
-        if self.to[1] < self.from[1] { -1.0 } else { 1.0 }
-    }
-
+impl<S: Simd> RowArc<S> {
     /// The arc's two ends, and which of them are inside.
     #[inline(always)]
-    fn ends<S: Simd>(&self, simd: S, center_x: f32x16<S>) -> [End<S>; 2] {
+    fn ends(&self, simd: S, center_x: f32x16<S>) -> [End<S>; 2] {
         [
-            End::seen(simd, center_x, self.from, self.halves[0]),
-            End::seen(simd, center_x, self.to, self.halves[1]),
+            End::seen(simd, center_x, &self.from, self.halves[0]),
+            End::seen(simd, center_x, &self.to, self.halves[1]),
         ]
     }
 
     /// What it adds where all of it is inside.
     #[inline(always)]
-    fn whole<S: Simd>(&self, from_x: f32x16<S>, to_x: f32x16<S>) -> f32x16<S> {
-        let chord_y = (self.to[1] - self.from[1]) * (0.5 * FRAC_1_PI);
+    fn whole(&self, from_x: f32x16<S>, to_x: f32x16<S>) -> f32x16<S> {
+        let chord_y = (self.to.y - self.from.y) * (0.5 * FRAC_1_PI);
         (from_x + to_x) * chord_y + self.segment * self.turn
     }
 
     /// What it adds where nothing of it is inside.
     #[inline(always)]
-    fn missed<S: Simd>(&self, simd: S, center_x: f32x16<S>) -> f32x16<S> {
+    fn missed(&self, simd: S, center_x: f32x16<S>) -> f32x16<S> {
         let side = f32x16::splat(simd, 1.0).copysign(center_x + self.middle);
         side * (self.halves[1] - self.halves[0])
     }
@@ -206,14 +216,13 @@ struct End<S: Simd> {
 
 impl<S: Simd> End<S> {
     #[inline(always)]
-    fn seen(simd: S, center_x: f32x16<S>, [x, y, width]: [f32; 3], half: f32) -> Self {
-        let splat = |v: f32| f32x16::splat(simd, v);
-        let x = center_x + x;
+    fn seen(simd: S, center_x: f32x16<S>, end: &ArcEnd<S>, half: f32x16<S>) -> Self {
+        let (x, zero) = (center_x + end.x, f32x16::splat(simd, 0.0));
         Self {
-            point: [x, splat(y)],
-            is_in: x.abs().simd_lt(splat(width)),
-            seen_x: if width > 0.0 { x } else { splat(0.0) },
-            half: splat(half),
+            point: [x, end.y],
+            is_in: x.abs().simd_lt(end.width),
+            seen_x: end.width.simd_gt(zero).select(x, zero),
+            half,
         }
     }
 
@@ -227,7 +236,7 @@ impl<S: Simd> End<S> {
 
 /// An arc of so large a radius that it runs inside between any two of its points that are inside.
 #[inline(always)]
-pub(super) fn long_arc<S: Simd>(simd: S, columns: f32x16<S>, arc: &RowArc) -> f32x16<S> {
+pub(super) fn long_arc<S: Simd>(simd: S, columns: f32x16<S>, arc: &RowArc<S>) -> f32x16<S> {
     let zero = f32x16::splat(simd, 0.0);
     let center_x = arc.center.at(columns);
     let [from, to] = arc.ends(simd, center_x);
@@ -237,7 +246,7 @@ pub(super) fn long_arc<S: Simd>(simd: S, columns: f32x16<S>, arc: &RowArc) -> f3
     }
     let crossings = Crossings::find(simd, columns, arc);
     let (enter, leave) = (crossings.enter(), crossings.leave());
-    let rise = arc.rise();
+    let rise = arc.rise;
     let missed = arc.missed(simd, center_x);
     let mut met = any_in;
     if !any_in.all_true() {
@@ -281,7 +290,7 @@ fn select_point<S: Simd>(
 }
 
 #[inline(always)]
-pub(super) fn arc<S: Simd>(simd: S, columns: f32x16<S>, arc: &RowArc) -> f32x16<S> {
+pub(super) fn arc<S: Simd>(simd: S, columns: f32x16<S>, arc: &RowArc<S>) -> f32x16<S> {
     // An arc so near to the disc's own circle lies on it: where they cross is a matter of rounding.
     const SAME: f32 = 1e-4;
     let zero = f32x16::splat(simd, 0.0);
@@ -291,7 +300,7 @@ pub(super) fn arc<S: Simd>(simd: S, columns: f32x16<S>, arc: &RowArc) -> f32x16<
     let crossings = Crossings::find(simd, columns, arc);
     let (enter, leave) = (crossings.enter(), crossings.leave());
     let crossed = crosses(simd, center_x, &crossings, [enter, leave], arc);
-    let rise = arc.rise();
+    let rise = arc.rise;
     let (enters, leaves) = (enter[1] * rise, leave[1] * rise);
     let notched = from.is_in & to.is_in & crossed & leaves.simd_lt(enters);
     let same = (SAME - (arc.radius - 1.0).abs()).max(0.0);
@@ -316,7 +325,7 @@ pub(super) fn arc<S: Simd>(simd: S, columns: f32x16<S>, arc: &RowArc) -> f32x16<
 /// An arc that passes the disc's whole height: the disc's part beyond the two circles' common chord, and the arc's own
 /// beyond that.
 #[inline(always)]
-pub(super) fn through_arc<S: Simd>(simd: S, columns: f32x16<S>, arc: &RowArc) -> f32x16<S> {
+pub(super) fn through_arc<S: Simd>(simd: S, columns: f32x16<S>, arc: &RowArc<S>) -> f32x16<S> {
     let zero = f32x16::splat(simd, 0.0);
     let area = of_large_circle(simd, arc.power.at(columns), arc.radius);
     // On the centre's other side it is the circle's other half that a disc may meet.
@@ -336,16 +345,16 @@ fn of_large_circle<S: Simd>(simd: S, power: f32x16<S>, radius: f32) -> f32x16<S>
     segment(simd, half_chord, squared, radius) - half_disc_at(simd, half_chord, reach) * 2.0
 }
 
-/// A circle, seen from a row of pixels.
+/// A circle, seen from pixels.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct RowCircle {
-    pub(crate) power: Power,
+pub(crate) struct RowCircle<S: Simd> {
+    pub(crate) power: Power<S>,
     pub(crate) radius: f32,
 }
 
 /// What discs have of a circle.
 #[inline(always)]
-pub(crate) fn circle<S: Simd>(simd: S, columns: f32x16<S>, circle: &RowCircle) -> f32x16<S> {
+pub(crate) fn circle<S: Simd>(simd: S, columns: f32x16<S>, circle: &RowCircle<S>) -> f32x16<S> {
     let (zero, one) = (f32x16::splat(simd, 0.0), f32x16::splat(simd, 1.0));
     let (radius, power) = (circle.radius, circle.power.at(columns));
     let density = if radius >= core::f32::consts::SQRT_2 {

@@ -1,4 +1,4 @@
-//! What one piece of the outline adds to the densities of sixteen pixels of a row at once, in single precision.
+//! What one piece of the outline adds to the densities of sixteen pixels at once, in single precision.
 //!
 //! By Green's theorem the area that the outline shares with the unit disc about a pixel is the sum over its pieces of the
 //! integral of x dy, with x held between the circle's two sides: left of the disc a piece counts -sqrt(1 - y²), right of it
@@ -79,23 +79,23 @@ pub(crate) fn whole_disc<S: Simd>(simd: S, depth: f32x16<S>) -> f32x16<S> {
     half_discs(simd, depth) * 2.0 + 0.5
 }
 
-/// A number that changes by the same step from pixel to pixel.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Ramp {
-    pub(super) start: f32,
+/// A number of each lane that changes by the same step from column to column.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ramp<S: Simd> {
+    pub(super) start: f32x16<S>,
     pub(super) step: f32,
 }
 
-impl Ramp {
+impl<S: Simd> Ramp<S> {
     #[inline(always)]
-    pub(super) fn at<S: Simd>(self, columns: f32x16<S>) -> f32x16<S> {
+    pub(super) fn at(self, columns: f32x16<S>) -> f32x16<S> {
         columns * self.step + self.start
     }
 }
 
 /// A line that passes the disc's whole height: its profile is F(t) - 1/2.
 #[inline(always)]
-pub(super) fn through_line<S: Simd>(simd: S, columns: f32x16<S>, distance: Ramp) -> f32x16<S> {
+pub(super) fn through_line<S: Simd>(simd: S, columns: f32x16<S>, distance: Ramp<S>) -> f32x16<S> {
     half_discs(simd, distance.at(columns)) * 2.0
 }
 
@@ -129,9 +129,9 @@ pub(crate) struct Wide {
 }
 
 /// A line that passes all that a pixel averages over, seen from a row of pixels.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct WideLine {
-    pub(super) distance: Ramp,
+#[derive(Debug, Clone, Copy)]
+pub(super) struct WideLine<S: Simd> {
+    pub(super) distance: Ramp<S>,
     /// Half of what the square's sides span across the line, the larger and the smaller.
     pub(super) spans: [f32; 2],
     pub(super) radius: f32,
@@ -160,16 +160,16 @@ fn mean_of_profile<S: Simd>(
 }
 
 #[inline(always)]
-pub(super) fn wide_line<S: Simd>(simd: S, columns: f32x16<S>, line: &WideLine) -> f32x16<S> {
+pub(super) fn wide_line<S: Simd>(simd: S, columns: f32x16<S>, line: &WideLine<S>) -> f32x16<S> {
     let [larger, smaller] = line.spans;
     let spans = [f32x16::splat(simd, larger), f32x16::splat(simd, smaller)];
     mean_of_profile(simd, line.distance.at(columns), spans, line.radius) - 0.5
 }
 
 /// An arc that passes all that a pixel averages over, seen from a row of pixels.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct WideArc {
-    pub(super) center: Ramp,
+#[derive(Debug, Clone, Copy)]
+pub(super) struct WideArc<S: Simd> {
+    pub(super) center: Ramp<S>,
     pub(super) center_y: f32,
     pub(super) arc_radius: f32,
     pub(super) turn: f32,
@@ -185,7 +185,7 @@ pub(super) const LEAST_SPAN: f32 = 0.004;
 /// As the line that touches the arc nearest to the pixel, moved by the arc's mean distance from it: the mean square along it,
 /// of the disc's chord and of the square, over twice the arc's radius. Both are taken for normally distributed.
 #[inline(always)]
-pub(super) fn wide_arc<S: Simd>(simd: S, columns: f32x16<S>, arc: &WideArc) -> f32x16<S> {
+pub(super) fn wide_arc<S: Simd>(simd: S, columns: f32x16<S>, arc: &WideArc<S>) -> f32x16<S> {
     let zero = f32x16::splat(simd, 0.0);
     let x = arc.center.at(columns);
     let far = (x * x + arc.center_y * arc.center_y)
@@ -211,26 +211,22 @@ pub(super) fn wide_arc<S: Simd>(simd: S, columns: f32x16<S>, arc: &WideArc) -> f
 }
 
 /// A line that ends within the disc's height, seen from a row of pixels.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct RowLine {
+#[derive(Debug, Clone, Copy)]
+pub(super) struct RowLine<S: Simd> {
     /// Its signed distance, and where on it its start is, counted from the foot point.
-    pub(super) distance: Ramp,
-    pub(super) start: Ramp,
+    pub(super) distance: Ramp<S>,
+    pub(super) start: Ramp<S>,
     pub(super) length: f32,
     pub(super) along: [f32; 2],
     /// `half_disc` at its start's y and at its end's.
-    pub(super) halves: [f32; 2],
+    pub(super) halves: [f32x16<S>; 2],
 }
 
 #[inline(always)]
-pub(super) fn line<S: Simd>(simd: S, columns: f32x16<S>, line: &RowLine) -> f32x16<S> {
+pub(super) fn line<S: Simd>(simd: S, columns: f32x16<S>, line: &RowLine<S>) -> f32x16<S> {
     let distance = line.distance.at(columns);
     let start = line.start.at(columns);
-    let halves = [
-        f32x16::splat(simd, line.halves[0]),
-        f32x16::splat(simd, line.halves[1]),
-    ];
-    line_at(simd, distance, start, line.length, line.along, halves)
+    line_at(simd, distance, start, line.length, line.along, line.halves)
 }
 
 /// A line by its signed distance and where on it its start is, counted from the foot point; `halves` are `half_disc` at its
@@ -280,21 +276,22 @@ pub(crate) fn line_at<S: Simd>(
 }
 
 /// A line within the height of a row of pixels, whose squares it cuts.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct RowCut {
-    /// The x of its two ends.
-    pub(super) ends: [Ramp; 2],
+#[derive(Debug, Clone, Copy)]
+pub(super) struct RowCut<S: Simd> {
+    /// The x of its two ends, and from one to the other.
+    pub(super) ends: [Ramp<S>; 2],
+    pub(super) width: f32,
     pub(super) height: f32,
 }
 
 /// The coverage that a line adds to unit squares: as for discs, with x held between the square's two sides.
 #[inline(always)]
-pub(super) fn cut<S: Simd>(simd: S, columns: f32x16<S>, cut: &RowCut) -> f32x16<S> {
+pub(super) fn cut<S: Simd>(simd: S, columns: f32x16<S>, cut: &RowCut<S>) -> f32x16<S> {
     /// Ends nearer to each other than this are one: a quotient of two tiny differences has no digits.
     const STEEP: f32 = 1e-3;
     let half = f32x16::splat(simd, 0.5);
     let (from, to) = (cut.ends[0].at(columns), cut.ends[1].at(columns));
-    let width = cut.ends[1].start - cut.ends[0].start;
+    let width = cut.width;
     if width.abs() < STEEP {
         return ((from + to) * half).max(-half).min(half) * cut.height;
     }

@@ -2,12 +2,48 @@
 
 use core::f64::consts::SQRT_2;
 
+use fearless_simd::{Select, Simd, SimdBase, SimdFloat, f32x16};
 use glam::DVec2;
 
-use super::arcs::{Power, RowArc};
+use super::arcs::{ArcEnd, Power, RowArc};
 use super::kernels::{LEAST_SPAN, Ramp, RowCut, RowLine, Wide, WideArc, WideLine};
 use super::pieces::{Form, Piece};
-use super::{Lattice, RowForm, Window};
+use super::{RowForm, Window};
+
+/// From where pieces are seen.
+pub(super) struct View<S: Simd> {
+    pub(super) simd: S,
+    /// The first pixel.
+    pub(super) origin: DVec2,
+    /// How far below it each lane's pixel is.
+    pub(super) down: f32x16<S>,
+    /// From column to column.
+    pub(super) pitch: f64,
+}
+
+impl<S: Simd> View<S> {
+    /// An end of an arc from the first pixel, and its centre's x.
+    #[inline(always)]
+    fn end(&self, end: DVec2, center_x: f64) -> ArcEnd<S> {
+        let (zero, one) = (f32x16::splat(self.simd, 0.0), f32x16::splat(self.simd, 1.0));
+        let y = f32x16::splat(self.simd, end.y as f32) - self.down;
+        let width = (one - y) * (one + y);
+        ArcEnd {
+            x: (end.x - center_x) as f32,
+            y,
+            width: width.simd_gt(zero).select(width.sqrt(), -one),
+        }
+    }
+
+    /// What is `start` at the first pixel and falls with x by so much.
+    #[inline(always)]
+    fn ramp(&self, start: f64, slope: f64) -> Ramp<S> {
+        Ramp {
+            start: f32x16::splat(self.simd, start as f32),
+            step: (-slope * self.pitch) as f32,
+        }
+    }
+}
 
 impl Piece {
     #[inline(always)]
@@ -26,22 +62,16 @@ impl Piece {
         }
     }
 
-    /// Where the part of the piece that windows in the row at `y` meet begins and ends, from the row.
+    /// The least and the largest x from which a window in one of the rows from one y to another meets the piece.
     #[inline(always)]
-    fn met(&self, y: f64, window: Window) -> [f64; 2] {
+    pub(super) fn extent(&self, [top, bottom]: [f64; 2], window: Window) -> [f64; 2] {
         let reach = window.reach();
-        [(self.low - y).max(-reach), (self.high - y).min(reach)]
-    }
-
-    /// The least and the largest x from which a window in the row at `y` meets the piece.
-    #[inline(always)]
-    pub(super) fn extent(&self, y: f64, window: Window) -> [f64; 2] {
-        let [low, high] = self.met(y, window);
-        let (a, b) = (self.x_at(y + low), self.x_at(y + high));
+        let (low, high) = (self.low.max(top - reach), self.high.min(bottom + reach));
+        let (a, b) = (self.x_at(low), self.x_at(high));
         let reach = match self.form {
             // Half of the disc's widest chord between the two heights: lines are too cheap for it to pay.
             Form::Arc { .. } => {
-                let nearest = low.max(-high).max(0.0);
+                let nearest = (low - bottom).max(top - high).max(0.0);
                 (1.0 - nearest * nearest).sqrt()
             }
             Form::Line { .. } => window.reach(),
@@ -53,9 +83,9 @@ impl Piece {
         match self.form {
             Form::Line { slope, width, .. } => {
                 // A disc farther than 1 from the line does not meet it.
-                let middle = self.from.x + (y - self.from.y) * slope;
-                left = left.max(middle - width);
-                right = right.min(middle + width);
+                let [a, b] = [top, bottom].map(|y| self.from.x + (y - self.from.y) * slope);
+                left = left.max(a.min(b) - width);
+                right = right.min(a.max(b) + width);
             }
             Form::Arc {
                 center,
@@ -63,18 +93,19 @@ impl Piece {
                 side,
                 ..
             } => {
-                let rise = center.y - y;
-                if low <= rise && rise <= high {
+                if low <= center.y && center.y <= high {
                     let farthest = center.x + side * radius;
                     left = left.min(farthest - reach);
                     right = right.max(farthest + reach);
                 }
                 // A disc farther than 1 from the circle does not meet it. Above and below the circle's middle part a disc beside the centre
                 // may meet either half.
-                let beside = |r: f64| center.x + side * (r * r - rise * rise).max(0.0).sqrt();
-                let ends = [radius - 1.0, radius + 1.0];
-                let inner = (rise.abs() < ends[0]).then(|| beside(ends[0]));
-                let outer = beside(ends[1]);
+                let nearest = (center.y - bottom).max(top - center.y).max(0.0);
+                let farthest = (center.y - top).max(bottom - center.y);
+                let beside =
+                    |r: f64, rise: f64| center.x + side * (r * r - rise * rise).max(0.0).sqrt();
+                let inner = (farthest < radius - 1.0).then(|| beside(radius - 1.0, farthest));
+                let outer = beside(radius + 1.0, nearest);
                 let (least, most) = if side > 0.0 {
                     (inner.unwrap_or(left), outer)
                 } else {
@@ -120,19 +151,16 @@ impl Piece {
         }
     }
 
-    /// The piece that passes all that pixels average over, as a row sees it from its column at `origin`.
+    /// The piece that passes all that pixels average over, as it is seen from a row's columns on.
     #[inline(always)]
-    pub(super) fn seen_widely(&self, origin: DVec2, lattice: &Lattice, wide: &Wide) -> RowForm {
-        let ramp = |start: f64, slope: f64| Ramp {
-            start: start as f32,
-            step: (-slope * lattice.pitch) as f32,
-        };
+    pub(super) fn seen_widely<S: Simd>(&self, view: &View<S>, wide: &Wide) -> RowForm<S> {
         let (half, radius) = (wide.half as f32, wide.radius as f32);
         match self.form {
             Form::Line { along, .. } => {
                 let [a, b] = [along.x, along.y].map(|part| part.abs() as f32 * half);
+                let distance = (self.from - view.origin).perp_dot(along);
                 RowForm::WideLine(WideLine {
-                    distance: ramp((self.from - origin).perp_dot(along), along.y),
+                    distance: view.ramp(distance, along.y),
                     spans: [a.max(b), a.min(b).max(LEAST_SPAN * half)],
                     radius,
                 })
@@ -144,9 +172,9 @@ impl Piece {
                 side,
                 ..
             } => {
-                let seen = center - origin;
+                let seen = center - view.origin;
                 RowForm::WideArc(WideArc {
-                    center: ramp(seen.x, 1.0),
+                    center: view.ramp(seen.x, 1.0),
                     center_y: seen.y as f32,
                     arc_radius: arc_radius as f32,
                     turn: turn as f32,
@@ -158,33 +186,47 @@ impl Piece {
         }
     }
 
-    /// The piece as a row sees it from its column at `origin`.
+    /// The part of the squares of a row that the piece cuts.
     #[inline(always)]
-    pub(super) fn seen_from(&self, origin: DVec2, lattice: &Lattice, halves: [f32; 2]) -> RowForm {
-        let [low, high] = self.met(origin.y, lattice.window);
+    pub(super) fn cut_from<S: Simd>(&self, view: &View<S>) -> RowCut<S> {
+        let y = view.origin.y;
+        let (low, high) = (self.low.max(y - 0.5), self.high.min(y + 0.5));
+        let ends = [low, high].map(|y| self.x_at(y) - view.origin.x);
+        let height = high - low;
+        RowCut {
+            ends: ends.map(|x| view.ramp(x, 1.0)),
+            width: ends[1] as f32 - ends[0] as f32,
+            height: if self.from.y < self.to.y {
+                height
+            } else {
+                -height
+            } as f32,
+        }
+    }
+
+    /// The piece as discs see it whose rows are no lower than `bottom`; `halves` are `half_disc` at its start's y and at its end's.
+    #[inline(always)]
+    pub(super) fn seen_from<S: Simd>(
+        &self,
+        view: &View<S>,
+        bottom: f64,
+        halves: [f32x16<S>; 2],
+    ) -> RowForm<S> {
+        let (simd, origin, down) = (view.simd, view.origin, view.down);
         let (from, to) = (self.from - origin, self.to - origin);
-        let passes = self.low <= origin.y - 1.0 && self.high >= origin.y + 1.0;
-        let ramp = |start: f64, slope: f64| Ramp {
-            start: start as f32,
-            step: (-slope * lattice.pitch) as f32,
-        };
+        let passes = self.low <= origin.y - 1.0 && self.high >= bottom + 1.0;
         match self.form {
-            Form::Line { along, .. } if lattice.window == Window::Square => {
-                let ends = [low, high].map(|rise| ramp(self.x_at(origin.y + rise) - origin.x, 1.0));
-                let upwards = along.y > 0.0;
-                RowForm::Cut(RowCut {
-                    ends,
-                    height: if upwards { high - low } else { low - high } as f32,
-                })
-            }
             Form::Line { along, length, .. } => {
-                let distance = ramp(from.perp_dot(along), along.y);
+                let mut distance = view.ramp(from.perp_dot(along), along.y);
+                distance.start += down * along.x as f32;
                 if passes {
                     return RowForm::ThroughLine(distance);
                 }
+                let mut start = view.ramp(from.dot(along), along.x);
+                start.start -= down * along.y as f32;
                 RowForm::Line(RowLine {
                     distance,
-                    start: ramp(from.dot(along), along.x),
+                    start,
                     length: length as f32,
                     along: along.as_vec2().to_array(),
                     halves,
@@ -197,30 +239,32 @@ impl Piece {
                 side,
                 segment,
             } => {
+                let (zero, one) = (f32x16::splat(simd, 0.0), f32x16::splat(simd, 1.0));
                 let seen = center - origin;
-                let end = |end: DVec2| {
-                    // Negative where the end is above or below the disc.
-                    let width = 1.0 - end.y * end.y;
-                    let width = if width > 0.0 { width.sqrt() } else { -1.0 };
-                    [end.x - seen.x, end.y, width].map(|v| v as f32)
-                };
+                let center_y = f32x16::splat(simd, seen.y as f32) - down;
+                let (from, to) = (view.end(from, seen.x), view.end(to, seen.x));
                 // The end that is less high or low, if any is within the disc's height.
-                let nearer = if from.y.abs() < to.y.abs() { from } else { to };
-                let middle = if nearer.y.abs() < 1.0 {
-                    nearer.x
-                } else {
-                    self.x_at(origin.y + (low + high) / 2.0) - origin.x
-                };
+                let (from_high, to_high) = (from.y.abs(), to.y.abs());
+                let nearer = from_high.simd_lt(to_high);
+                let nearer_x =
+                    nearer.select(f32x16::splat(simd, from.x), f32x16::splat(simd, to.x));
+                let low = f32x16::splat(simd, (self.low - origin.y) as f32) - down;
+                let high = f32x16::splat(simd, (self.high - origin.y) as f32) - down;
+                let rise = (low.max(-one) + high.min(one)) * 0.5 - center_y;
+                let whole = f32x16::splat(simd, radius as f32);
+                let beside = ((whole - rise) * (whole + rise)).max(zero).sqrt() * side as f32;
+                let middle = from_high.min(to_high).simd_lt(one).select(nearer_x, beside);
                 let arc = RowArc {
-                    center: ramp(seen.x, 1.0),
-                    center_y: seen.y as f32,
+                    center: view.ramp(seen.x, 1.0),
+                    center_y,
                     radius: radius as f32,
-                    power: Power::of(seen, radius, lattice.pitch),
+                    power: Power::of(seen, radius, view.pitch, down),
                     turn: turn as f32,
                     side: side as f32,
-                    from: end(from),
-                    to: end(to),
-                    middle: (middle - seen.x) as f32,
+                    from,
+                    to,
+                    rise: if self.to.y < self.from.y { -1.0 } else { 1.0 },
+                    middle,
                     halves,
                     segment,
                 };

@@ -1,0 +1,429 @@
+//! Bands of four rows, drawn by tiles of four by four pixels.
+//!
+//! What finds the pieces that discs may meet, and where, is shared by four rows; and of a tile's sixteen discs more lie alike to a piece
+//! than of as many in a row.
+
+use core::ops::Range;
+
+use fearless_simd::{Simd, SimdBase, f32x16};
+use glam::DVec2;
+
+use super::kernels::half_discs;
+use super::pieces::{self, Piece};
+use super::seen::View;
+use super::{Lattice, Points, STRETCH, Stroke, UNIT, Window};
+use crate::density::Sink;
+use crate::density::lanes::LANES;
+use crate::outline::Edge;
+
+/// Rows of a band, and columns of a tile.
+pub(crate) const BAND: i64 = SIDE as i64;
+const SIDE: usize = 4;
+
+/// A part of a band that was computed.
+#[derive(Debug, Clone)]
+struct Span {
+    columns: Range<i64>,
+    kind: Kind,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Kind {
+    /// One for each row.
+    Constant([f32; SIDE]),
+    /// Where the values of the first row begin.
+    Values(usize),
+}
+
+/// What one piece of the outline does to a band.
+#[derive(Debug, Clone, Copy)]
+struct Entry {
+    first: i64,
+    end: i64,
+    piece: u32,
+    /// What its passing adds to all columns of each row from `end` on.
+    steps: [i64; SIDE],
+}
+
+/// Draws bands of one outline, from top to bottom.
+#[derive(Debug, Default)]
+pub(crate) struct Bands {
+    pieces: Vec<Piece>,
+    /// How many pieces have been reached, and those of them that have not been left behind.
+    reached: usize,
+    active: Vec<u32>,
+    /// By their first column.
+    entries: Vec<Entry>,
+    /// Steps left of the columns that are drawn.
+    before: [i64; SIDE],
+    top: f64,
+    /// Where the entries of a cluster end, and their steps.
+    steps: Vec<(i64, [i64; SIDE])>,
+    /// The densities of a cluster, tile by tile.
+    tiles: Vec<f32>,
+    spans: Vec<Span>,
+    /// Densities row by row.
+    values: Vec<f32>,
+    /// Bands that end above it are the same as the last.
+    still_until: f64,
+}
+
+/// Columns extended to whole tiles.
+pub(crate) fn to_tiles(columns: &Range<i64>) -> Range<i64> {
+    columns.start.div_euclid(BAND) * BAND..(columns.end + BAND - 1).div_euclid(BAND) * BAND
+}
+
+/// The rows of a tile's lanes.
+#[inline(always)]
+fn rows<S: Simd>(simd: S) -> f32x16<S> {
+    const ROWS: [f32; LANES] = {
+        let mut rows = [0.0; LANES];
+        let mut lane = 0;
+        while lane < LANES {
+            rows[lane] = (lane / SIDE) as f32;
+            lane += 1;
+        }
+        rows
+    };
+    f32x16::from_slice(simd, &ROWS)
+}
+
+/// The columns of a tile's lanes.
+#[inline(always)]
+fn columns<S: Simd>(simd: S) -> f32x16<S> {
+    const COLUMNS: [f32; LANES] = {
+        let mut columns = [0.0; LANES];
+        let mut lane = 0;
+        while lane < LANES {
+            columns[lane] = (lane % SIDE) as f32;
+            lane += 1;
+        }
+        columns
+    };
+    f32x16::from_slice(simd, &COLUMNS)
+}
+
+impl Bands {
+    /// Takes the outline's edges, in penumbra radii.
+    pub(crate) fn load(&mut self, edges: impl Iterator<Item = Edge>) {
+        pieces::cut(edges, Window::Disc, None, &mut self.pieces);
+        self.reached = 0;
+        self.active.clear();
+        self.still_until = f64::NEG_INFINITY;
+    }
+
+    /// Whether the band whose last row is at `bottom` is the same as the last band.
+    pub(crate) fn is_still(&self, bottom: f64) -> bool {
+        bottom < self.still_until
+    }
+
+    /// Goes to the band whose first row is at `top`, below the last. Only `columns` will be asked for.
+    // One copy a SIMD level.
+    #[inline(never)]
+    pub(crate) fn go_to<S: Simd>(
+        &mut self,
+        simd: S,
+        top: f64,
+        columns: &Range<i64>,
+        lattice: &Lattice,
+    ) {
+        simd.vectorize(
+            #[inline(always)]
+            || self.find_entries(simd, top, columns, lattice),
+        );
+        self.entries
+            .sort_unstable_by_key(|entry| (entry.first, entry.piece));
+    }
+
+    #[inline(always)]
+    fn find_entries<S: Simd>(
+        &mut self,
+        simd: S,
+        top: f64,
+        columns: &Range<i64>,
+        lattice: &Lattice,
+    ) {
+        let bottom = top + (BAND - 1) as f64 * lattice.pitch;
+        let pieces = &self.pieces;
+        while let Some(piece) = pieces.get(self.reached).filter(|p| p.low < bottom + 1.0) {
+            if piece.high > top - 1.0 {
+                self.active.push(self.reached as u32);
+            }
+            self.reached += 1;
+        }
+        self.active
+            .retain(|&index| pieces[index as usize].high > top - 1.0);
+        self.entries.clear();
+        self.before = [0; SIDE];
+        self.top = top;
+        let next = pieces.get(self.reached).map_or(f64::INFINITY, |p| p.low);
+        self.still_until = next - 1.0;
+        let down = rows(simd) * lattice.pitch as f32;
+        for &index in &self.active {
+            let piece = &pieces[index as usize];
+            let still = piece.is_upright() && piece.low <= top - 1.0;
+            self.still_until = self.still_until.min(if still {
+                piece.high - 1.0
+            } else {
+                f64::NEG_INFINITY
+            });
+            let halves = piece.halves(simd, top, down);
+            let mut ends = [[0.0; LANES]; 2];
+            halves[0].store_slice(&mut ends[0]);
+            halves[1].store_slice(&mut ends[1]);
+            // Each end is rounded alone, so that what follows cancels it.
+            let whole = |half: f32| (2.0 * UNIT * f64::from(half)) as i64;
+            let mut steps = [0; SIDE];
+            for (row, step) in steps.iter_mut().enumerate() {
+                *step = whole(ends[0][row * SIDE]) - whole(ends[1][row * SIDE]);
+            }
+            let [left, right] = piece.extent([top, bottom], Window::Disc);
+            // One column to spare on both sides, whichever way these are rounded.
+            let column = |x: f64| ((x - lattice.start) * lattice.density) as i64;
+            let reached = to_tiles(&(column(left) - 1..column(right) + 2));
+            if reached.end <= columns.start {
+                for (before, step) in self.before.iter_mut().zip(steps) {
+                    *before += step;
+                }
+            } else if reached.start < columns.end {
+                self.entries.push(Entry {
+                    first: reached.start,
+                    end: reached.end,
+                    piece: index,
+                    steps,
+                });
+            }
+        }
+    }
+
+    /// Forgets what was computed.
+    pub(crate) fn clear(&mut self) {
+        self.spans.clear();
+        self.values.clear();
+    }
+
+    /// Computes the band over `columns`, which are whole tiles, right of what was computed of it before.
+    // One copy a SIMD level.
+    #[inline(never)]
+    pub(crate) fn compute<S: Simd>(&mut self, simd: S, columns: Range<i64>, lattice: &Lattice) {
+        let mut base = self.before;
+        let mut at = columns.start;
+        let mut next = 0;
+        while next < self.entries.len() && at < columns.end {
+            // Entries that follow each other without a gap are one cluster.
+            let start = next;
+            let first = self.entries[next].first;
+            let mut end = first;
+            let mut after = base;
+            while let Some(entry) = self.entries.get(next) {
+                if next > start && entry.first > end {
+                    break;
+                }
+                end = end.max(entry.end);
+                for (after, step) in after.iter_mut().zip(entry.steps) {
+                    *after += step;
+                }
+                next += 1;
+            }
+            let (from, to) = (first.clamp(at, columns.end), end.clamp(at, columns.end));
+            self.push_constant(at..from, base);
+            if to > from {
+                self.cluster(simd, start..next, from..to, base, lattice);
+            }
+            at = to;
+            base = after;
+        }
+        self.push_constant(at..columns.end, base);
+    }
+
+    fn push_constant(&mut self, columns: Range<i64>, steps: [i64; SIDE]) {
+        let densities = steps.map(super::density);
+        if !columns.is_empty() && densities.iter().any(|&density| density > 0.0) {
+            self.spans.push(Span {
+                columns,
+                kind: Kind::Constant(densities),
+            });
+        }
+    }
+
+    /// Computes the densities of `columns`, all within the entries' cluster.
+    fn cluster<S: Simd>(
+        &mut self,
+        simd: S,
+        cluster: Range<usize>,
+        columns: Range<i64>,
+        base: [i64; SIDE],
+        lattice: &Lattice,
+    ) {
+        let width = (columns.end - columns.start) as usize;
+        self.lay_steps(simd, &cluster, &columns, base);
+        let down = simd.vectorize(
+            #[inline(always)]
+            || rows(simd) * lattice.pitch as f32,
+        );
+        let bottom = self.top + (BAND - 1) as f64 * lattice.pitch;
+        let [line] = Points::CENTER.lines else { return };
+        for entry in &self.entries[cluster] {
+            let from = entry.first.max(columns.start);
+            let to = entry.end.min(columns.end);
+            if from >= to {
+                continue;
+            }
+            let piece = &self.pieces[entry.piece as usize];
+            let place = |column: i64| (column - columns.start) as usize * SIDE;
+            let mut part = &mut self.tiles[place(from)..place(to)];
+            let mut column = from;
+            // Long ones stretch by stretch, counted from where the piece begins.
+            while !part.is_empty() {
+                let origin = entry.first + (column - entry.first) / STRETCH * STRETCH;
+                let stop = (origin + STRETCH).min(to);
+                let (now, rest) = part.split_at_mut((stop - column) as usize * SIDE);
+                let stroke = simd.vectorize(
+                    #[inline(always)]
+                    || {
+                        let x = lattice.start + origin as f64 * lattice.pitch;
+                        let view = View {
+                            simd,
+                            origin: DVec2::new(x, self.top),
+                            down,
+                            pitch: lattice.pitch,
+                        };
+                        let halves = piece.halves(simd, self.top, down);
+                        Stroke {
+                            form: piece.seen_from(&view, bottom, halves),
+                            columns: self::columns(simd) + (column - origin) as f32,
+                            step: SIDE as f32,
+                            halves,
+                            line,
+                            points: Points::CENTER.columns,
+                        }
+                    },
+                );
+                stroke.add_to(simd, now);
+                part = rest;
+                column = stop;
+            }
+        }
+        let start = self.values.len();
+        self.values.resize(start + SIDE * width + LANES, 0.0);
+        let values = &mut self.values[start..];
+        simd.vectorize(
+            #[inline(always)]
+            || untile(simd, &self.tiles, width, values),
+        );
+        self.spans.push(Span {
+            columns,
+            kind: Kind::Values(start),
+        });
+    }
+
+    /// Puts what the entries' steps add up to into the tiles of a cluster.
+    #[inline(always)]
+    fn lay_steps<S: Simd>(
+        &mut self,
+        simd: S,
+        cluster: &Range<usize>,
+        columns: &Range<i64>,
+        base: [i64; SIDE],
+    ) {
+        let width = columns.end - columns.start;
+        // Steps are summed before they are rounded: what lies left of the columns that are drawn changes nothing.
+        self.steps.clear();
+        let stepping = self.entries[cluster.clone()].iter();
+        self.steps
+            .extend(stepping.map(|entry| (entry.end, entry.steps)));
+        self.steps.sort_unstable_by_key(|(end, _)| *end);
+        let Self { steps, tiles, .. } = self;
+        tiles.resize(width as usize * SIDE, 0.0);
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let (mut sums, mut at) = (base, 0);
+                let last = (columns.end, [0; SIDE]);
+                for (end, steps) in steps.iter().chain(core::iter::once(&last)) {
+                    let end = (end - columns.start).clamp(at, width);
+                    let mut lanes = [0.0; LANES];
+                    for (lane, value) in lanes.iter_mut().enumerate() {
+                        *value = (sums[lane / SIDE] as f64 / UNIT) as f32;
+                    }
+                    let lanes = f32x16::from_slice(simd, &lanes);
+                    let part = &mut tiles[at as usize * SIDE..end as usize * SIDE];
+                    for tile in part.as_chunks_mut::<LANES>().0 {
+                        lanes.store_slice(tile);
+                    }
+                    for (sum, step) in sums.iter_mut().zip(steps) {
+                        *sum += step;
+                    }
+                    at = end;
+                }
+            },
+        );
+    }
+
+    /// Gives `sink` what was computed of one of the band's rows, the grid's row `y`, within `columns`, counted from `origin`.
+    #[inline(always)]
+    pub(crate) fn give(
+        &self,
+        row: usize,
+        y: u32,
+        columns: &Range<i64>,
+        origin: i64,
+        sink: &mut dyn Sink,
+    ) {
+        for span in &self.spans {
+            let start = span.columns.start.max(columns.start);
+            let end = span.columns.end.min(columns.end);
+            if start >= end {
+                continue;
+            }
+            let on_grid = (start - origin) as u32..(end - origin) as u32;
+            match span.kind {
+                Kind::Constant(densities) => {
+                    if densities[row] > 0.0 {
+                        sink.constant(y, on_grid, densities[row]);
+                    }
+                }
+                Kind::Values(place) => {
+                    let width = (span.columns.end - span.columns.start) as usize;
+                    let place = place + row * width + (start - span.columns.start) as usize;
+                    sink.values(y, on_grid, &self.values[place..]);
+                }
+            }
+        }
+    }
+}
+
+/// Densities of tiles row by row, held between 0 and 1.
+#[inline(always)]
+fn untile<S: Simd>(simd: S, tiles: &[f32], width: usize, values: &mut [f32]) {
+    let (zero, one) = (f32x16::splat(simd, 0.0), f32x16::splat(simd, 1.0));
+    let (a, rest) = values.split_at_mut(width);
+    let (b, rest) = rest.split_at_mut(width);
+    let (c, d) = rest.split_at_mut(width);
+    let [a, b, c, d] = [a, b, c, d].map(|row| row.as_chunks_mut::<SIDE>().0.iter_mut());
+    let rows = a.zip(b).zip(c.zip(d));
+    for (tile, ((a, b), (c, d))) in tiles.as_chunks::<LANES>().0.iter().zip(rows) {
+        let mut held = [0.0; LANES];
+        f32x16::from_slice(simd, tile)
+            .max(zero)
+            .min(one)
+            .store_slice(&mut held);
+        for column in 0..SIDE {
+            a[column] = held[column];
+            b[column] = held[SIDE + column];
+            c[column] = held[2 * SIDE + column];
+            d[column] = held[3 * SIDE + column];
+        }
+    }
+}
+
+impl Piece {
+    /// `half_disc` at the y of its two ends, seen from rows so far `down` from `top`.
+    #[inline(always)]
+    fn halves<S: Simd>(&self, simd: S, top: f64, down: f32x16<S>) -> [f32x16<S>; 2] {
+        // A closure would not always be inlined.
+        let from = f32x16::splat(simd, (self.from.y - top) as f32) - down;
+        let to = f32x16::splat(simd, (self.to.y - top) as f32) - down;
+        [half_discs(simd, from), half_discs(simd, to)]
+    }
+}
