@@ -144,9 +144,9 @@ pub struct Costs {
 /// One core with AVX-512.
 pub const COSTS: Costs = Costs {
     pixel: 0.3,
-    line: 0.9,
-    arc: 2.3,
-    average: 8.0,
+    line: 0.7,
+    arc: 1.8,
+    average: 10.2,
     sum: 0.7,
     sum_row: 42.0,
     rounded: 0.5,

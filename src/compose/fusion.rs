@@ -23,6 +23,7 @@ use self::member::Member;
 use self::pixel::{By, Pixels};
 use super::caster::{AnyShadow, Cast};
 use crate::apart::overlapping;
+use crate::density::lanes::LANES;
 use crate::density::{PixelOptions, Sink};
 use crate::grid::Grid;
 use crate::scratch::Scratch;
@@ -132,17 +133,22 @@ impl Fusion {
                 at.clone(),
             );
             let held = self.pixels.held(at);
-            let is_held = |held: &f32| *held != 0.0;
-            let ends = (
-                held.iter().position(is_held),
-                held.iter().rposition(is_held),
-            );
-            if let (Some(first), Some(last)) = ends {
-                let held_back = columns.start + first as u32..columns.start + last as u32 + 1;
-                sink.values(y, held_back, &held[first..]);
+            if let Some(part) = held_back(held) {
+                let [first, end] = [part.start, part.end].map(|at| columns.start + at as u32);
+                sink.values(y, first..end, &held[part.start..]);
             }
         }
     }
+}
+
+/// Where anything is held back, to whole blocks.
+fn held_back(held: &[f32]) -> Option<Range<usize>> {
+    // A block at once: pixel by pixel it would take as long as all that meets there.
+    let is_held = |block: &[f32]| block.iter().fold(false, |any, held| any | (*held != 0.0));
+    let blocks = held.chunks(LANES);
+    let first = blocks.clone().position(is_held)?;
+    let last = blocks.clone().rposition(is_held)?;
+    Some(first * LANES..((last + 1) * LANES).min(held.len()))
 }
 
 /// One cast on its way to the pixels: those that others may reach too are kept until all are known, all others are told
