@@ -8,7 +8,7 @@ use core::ops::Range;
 use fearless_simd::Simd;
 
 use super::frame::Frame;
-use super::rows::{BAND, Bands, Lattice, Points, Rows, to_tiles};
+use super::rows::{BAND, Bands, Lattice, Points, Rows, Window, to_tiles};
 use super::sampling::Sampling;
 use super::{CURVES, PixelOptions, Sink, averaged_side, join, reach, seen_columns};
 use crate::grid::Grid;
@@ -62,9 +62,17 @@ pub(crate) fn fill<S: Simd>(
         wanted_of_rows,
         ..
     } = scratch;
-    if averaged_side(radius) == 0.0 {
+    // What is wide is seen so that pieces pass it, row by row.
+    if sampling.window == Window::Disc && points.wide.is_none() {
         bands.load(placed);
-        fill_bands(simd, &drawing, bands, (wanted, wanted_of_rows), sink);
+        fill_bands(
+            simd,
+            &drawing,
+            &points,
+            bands,
+            (wanted, wanted_of_rows),
+            sink,
+        );
     } else {
         rows.load(placed, sampling.window, &points);
         fill_rows(simd, &drawing, &points, rows, wanted, sink);
@@ -152,6 +160,7 @@ fn fill_rows<S: Simd>(
 fn fill_bands<S: Simd>(
     simd: S,
     drawing: &Drawing<'_>,
+    points: &Points<'_>,
     bands: &mut Bands,
     (all, wanted): (&mut Vec<Range<i64>>, &mut [Vec<Range<i64>>; BAND as usize]),
     sink: &mut dyn Sink,
@@ -174,7 +183,7 @@ fn fill_bands<S: Simd>(
         join(all);
         let bottom = drawing.y(first + BAND - 1);
         if !bands.is_still(bottom) {
-            bands.go_to(simd, drawing.y(first), columns, lattice);
+            bands.go_to(simd, drawing.y(first), columns, lattice, points);
             computed = Computed::Nothing;
         }
         if computed != Computed::All {
@@ -188,7 +197,7 @@ fn fill_bands<S: Simd>(
             };
             bands.clear();
             for columns in all.iter() {
-                bands.compute(simd, columns.clone(), lattice);
+                bands.compute(simd, columns.clone(), lattice, points);
             }
         }
         for line in within {

@@ -20,6 +20,9 @@ use crate::outline::Edge;
 pub(crate) const BAND: i64 = SIDE as i64;
 const SIDE: usize = 4;
 
+/// From a band's first row to its last, in pixels.
+const HEIGHT: f64 = (SIDE - 1) as f64;
+
 /// A part of a band that was computed.
 #[derive(Debug, Clone)]
 struct Span {
@@ -126,10 +129,11 @@ impl Bands {
         top: f64,
         columns: &Range<i64>,
         lattice: &Lattice,
+        points: &Points<'_>,
     ) {
         simd.vectorize(
             #[inline(always)]
-            || self.find_entries(simd, top, columns, lattice),
+            || self.find_entries(simd, top, columns, lattice, points),
         );
         self.entries
             .sort_unstable_by_key(|entry| (entry.first, entry.piece));
@@ -142,45 +146,50 @@ impl Bands {
         top: f64,
         columns: &Range<i64>,
         lattice: &Lattice,
+        points: &Points<'_>,
     ) {
-        let bottom = top + (BAND - 1) as f64 * lattice.pitch;
+        let (height, spread) = (points.height(), points.width() * lattice.pitch);
+        let (bottom, reach) = (top + HEIGHT * lattice.pitch, 1.0 + height);
         let pieces = &self.pieces;
-        while let Some(piece) = pieces.get(self.reached).filter(|p| p.low < bottom + 1.0) {
-            if piece.high > top - 1.0 {
+        while let Some(piece) = pieces
+            .get(self.reached)
+            .filter(|piece| piece.low < bottom + reach)
+        {
+            if piece.high > top - reach {
                 self.active.push(self.reached as u32);
             }
             self.reached += 1;
         }
         self.active
-            .retain(|&index| pieces[index as usize].high > top - 1.0);
+            .retain(|&index| pieces[index as usize].high > top - reach);
         self.entries.clear();
         self.before = [0; SIDE];
         self.top = top;
         let next = pieces.get(self.reached).map_or(f64::INFINITY, |p| p.low);
-        self.still_until = next - 1.0;
+        self.still_until = next - reach;
         let down = rows(simd) * lattice.pitch as f32;
         for &index in &self.active {
             let piece = &pieces[index as usize];
-            let still = piece.is_upright() && piece.low <= top - 1.0;
+            let still = piece.is_upright() && piece.low <= top - reach;
             self.still_until = self.still_until.min(if still {
-                piece.high - 1.0
+                piece.high - reach
             } else {
                 f64::NEG_INFINITY
             });
-            let halves = piece.halves(simd, top, down);
-            let mut ends = [[0.0; LANES]; 2];
-            halves[0].store_slice(&mut ends[0]);
-            halves[1].store_slice(&mut ends[1]);
-            // Each end is rounded alone, so that what follows cancels it.
-            let whole = |half: f32| (2.0 * UNIT * f64::from(half)) as i64;
             let mut steps = [0; SIDE];
-            for (row, step) in steps.iter_mut().enumerate() {
-                *step = whole(ends[0][row * SIDE]) - whole(ends[1][row * SIDE]);
+            for line in points.lines {
+                let halves = piece.halves(simd, top + line.offset, down);
+                let mut ends = [[0.0; LANES]; 2];
+                halves[0].store_slice(&mut ends[0]);
+                halves[1].store_slice(&mut ends[1]);
+                for (row, step) in steps.iter_mut().enumerate() {
+                    *step += super::step(line, [ends[0][row * SIDE], ends[1][row * SIDE]]);
+                }
             }
-            let [left, right] = piece.extent([top, bottom], Window::Disc);
+            let [left, right] = piece.extent([top - height, bottom + height], Window::Disc);
             // One column to spare on both sides, whichever way these are rounded.
             let column = |x: f64| ((x - lattice.start) * lattice.density) as i64;
-            let reached = to_tiles(&(column(left) - 1..column(right) + 2));
+            let reached = to_tiles(&(column(left - spread) - 1..column(right + spread) + 2));
             if reached.end <= columns.start {
                 for (before, step) in self.before.iter_mut().zip(steps) {
                     *before += step;
@@ -205,7 +214,13 @@ impl Bands {
     /// Computes the band over `columns`, which are whole tiles, right of what was computed of it before.
     // One copy a SIMD level.
     #[inline(never)]
-    pub(crate) fn compute<S: Simd>(&mut self, simd: S, columns: Range<i64>, lattice: &Lattice) {
+    pub(crate) fn compute<S: Simd>(
+        &mut self,
+        simd: S,
+        columns: Range<i64>,
+        lattice: &Lattice,
+        points: &Points<'_>,
+    ) {
         let mut base = self.before;
         let mut at = columns.start;
         let mut next = 0;
@@ -228,7 +243,7 @@ impl Bands {
             let (from, to) = (first.clamp(at, columns.end), end.clamp(at, columns.end));
             self.push_constant(at..from, base);
             if to > from {
-                self.cluster(simd, start..next, from..to, base, lattice);
+                self.cluster(simd, start..next, from..to, base, lattice, points);
             }
             at = to;
             base = after;
@@ -254,6 +269,7 @@ impl Bands {
         columns: Range<i64>,
         base: [i64; SIDE],
         lattice: &Lattice,
+        points: &Points<'_>,
     ) {
         let width = (columns.end - columns.start) as usize;
         self.lay_steps(simd, &cluster, &columns, base);
@@ -261,47 +277,49 @@ impl Bands {
             #[inline(always)]
             || rows(simd) * lattice.pitch as f32,
         );
-        let bottom = self.top + (BAND - 1) as f64 * lattice.pitch;
-        let [line] = Points::CENTER.lines else { return };
         for entry in &self.entries[cluster] {
             let from = entry.first.max(columns.start);
             let to = entry.end.min(columns.end);
-            if from >= to {
-                continue;
-            }
             let piece = &self.pieces[entry.piece as usize];
-            let place = |column: i64| (column - columns.start) as usize * SIDE;
-            let mut part = &mut self.tiles[place(from)..place(to)];
-            let mut column = from;
-            // Long ones stretch by stretch, counted from where the piece begins.
-            while !part.is_empty() {
-                let origin = entry.first + (column - entry.first) / STRETCH * STRETCH;
-                let stop = (origin + STRETCH).min(to);
-                let (now, rest) = part.split_at_mut((stop - column) as usize * SIDE);
-                let stroke = simd.vectorize(
-                    #[inline(always)]
-                    || {
-                        let x = lattice.start + origin as f64 * lattice.pitch;
-                        let view = View {
-                            simd,
-                            origin: DVec2::new(x, self.top),
-                            down,
-                            pitch: lattice.pitch,
-                        };
-                        let halves = piece.halves(simd, self.top, down);
-                        Stroke {
-                            form: piece.seen_from(&view, bottom, halves),
-                            columns: self::columns(simd) + (column - origin) as f32,
-                            step: SIDE as f32,
-                            halves,
-                            line,
-                            points: Points::CENTER.columns,
-                        }
-                    },
-                );
-                stroke.add_to(simd, now);
-                part = rest;
-                column = stop;
+            for line in points.lines {
+                let top = self.top + line.offset;
+                let bottom = top + HEIGHT * lattice.pitch;
+                if from >= to || piece.low >= bottom + 1.0 || piece.high <= top - 1.0 {
+                    continue;
+                }
+                let place = |column: i64| (column - columns.start) as usize * SIDE;
+                let mut part = &mut self.tiles[place(from)..place(to)];
+                let mut column = from;
+                // Long ones stretch by stretch, counted from where the piece begins.
+                while !part.is_empty() {
+                    let origin = entry.first + (column - entry.first) / STRETCH * STRETCH;
+                    let stop = (origin + STRETCH).min(to);
+                    let (now, rest) = part.split_at_mut((stop - column) as usize * SIDE);
+                    let stroke = simd.vectorize(
+                        #[inline(always)]
+                        || {
+                            let x = lattice.start + origin as f64 * lattice.pitch;
+                            let view = View {
+                                simd,
+                                origin: DVec2::new(x, top),
+                                down,
+                                pitch: lattice.pitch,
+                            };
+                            let halves = piece.halves(simd, top, down);
+                            Stroke {
+                                form: piece.seen_from(&view, bottom, halves),
+                                columns: self::columns(simd) + (column - origin) as f32,
+                                step: SIDE as f32,
+                                halves,
+                                line,
+                                points: points.columns,
+                            }
+                        },
+                    );
+                    stroke.add_to(simd, now);
+                    part = rest;
+                    column = stop;
+                }
             }
         }
         let start = self.values.len();
