@@ -388,7 +388,7 @@ impl Rows {
                     let stop = (origin + STRETCH - column).min(part.len() as i64);
                     let (now, rest) = part.split_at_mut(stop as usize);
                     let x = lattice.start + origin as f64 * lattice.pitch;
-                    let stroke = simd.vectorize(
+                    simd.vectorize(
                         #[inline(always)]
                         || {
                             let view = View {
@@ -405,17 +405,17 @@ impl Rows {
                                 }
                                 None => piece.seen_from(&view, view.origin.y, halves),
                             };
-                            Stroke {
+                            let stroke = Stroke {
                                 form,
                                 columns: lanes(simd) + (column - origin) as f32,
                                 step: LANES as f32,
                                 halves,
                                 line,
                                 points: points.columns,
-                            }
+                            };
+                            stroke.add_to(simd, now);
                         },
                     );
-                    stroke.add_to(simd, now);
                     part = rest;
                     column += stop;
                 }

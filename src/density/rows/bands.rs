@@ -295,7 +295,7 @@ impl Bands {
                     let origin = entry.first + (column - entry.first) / STRETCH * STRETCH;
                     let stop = (origin + STRETCH).min(to);
                     let (now, rest) = part.split_at_mut((stop - column) as usize * SIDE);
-                    let stroke = simd.vectorize(
+                    simd.vectorize(
                         #[inline(always)]
                         || {
                             let x = lattice.start + origin as f64 * lattice.pitch;
@@ -306,17 +306,17 @@ impl Bands {
                                 pitch: lattice.pitch,
                             };
                             let halves = piece.halves(simd, top, down);
-                            Stroke {
+                            let stroke = Stroke {
                                 form: piece.seen_from(&view, bottom, halves),
                                 columns: self::columns(simd) + (column - origin) as f32,
                                 step: SIDE as f32,
                                 halves,
                                 line,
                                 points: points.columns,
-                            }
+                            };
+                            stroke.add_to(simd, now);
                         },
                     );
-                    stroke.add_to(simd, now);
                     part = rest;
                     column = stop;
                 }

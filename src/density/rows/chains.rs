@@ -22,23 +22,27 @@ pub(super) enum Passing {
 /// Finds the chains of a loop's pieces.
 pub(super) fn link(pieces: &mut [Piece], wide: &Wide) {
     let count = pieces.len();
+    let after = |at: usize| (at + 1) % count;
+    for at in 0..count {
+        pieces[at].goes_on = pieces[at].goes_on_as(&pieces[after(at)], wide);
+    }
     // Along the loop and back, and on beyond where it begins.
-    let along = (0..2 * count).map(|at| (at % count, (at + 1) % count));
-    let back = along.clone().rev().map(|(from, to)| (to, from));
-    for (from, to) in along.chain(back) {
-        let (a, b) = (pieces[from], pieces[to]);
-        if a.goes_on(&b, wide) || b.goes_on(&a, wide) {
+    let along = (0..2 * count).map(|at| at % count);
+    let ways = along.clone().map(|at| (at, at, after(at)));
+    for (joint, from, to) in ways.chain(along.rev().map(|at| (at, after(at), at))) {
+        if pieces[joint].goes_on {
+            let [first, last] = pieces[from].chain;
             let [low, high] = &mut pieces[to].chain;
-            (*low, *high) = (low.min(a.chain[0]), high.max(a.chain[1]));
+            (*low, *high) = (low.min(first), high.max(last));
         }
     }
 }
 
 impl Piece {
     /// Whether another piece goes on from this one so nearly as it would itself that what pixels average over hardly shows it.
-    fn goes_on(&self, next: &Self, wide: &Wide) -> bool {
+    fn goes_on_as(&self, next: &Self, wide: &Wide) -> bool {
         // By so many levels each a bend of the direction and of the curvature may show.
-        const SHOWN: f64 = 0.15;
+        const SHOWN: f64 = 0.25;
         let Some(((center, radius, [turn, side]), (c, r, [t, s]))) =
             self.form.circle().zip(next.form.circle())
         else {

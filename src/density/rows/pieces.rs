@@ -18,6 +18,8 @@ pub(super) struct Piece {
     pub(super) form: Form,
     /// The heights between which it and what goes on from it as it does are as good as one piece.
     pub(super) chain: [f64; 2],
+    /// Whether the loop's next piece is a part of that chain.
+    pub(super) goes_on: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -153,6 +155,7 @@ fn push_line(from: DVec2, to: DVec2, pieces: &mut Vec<Piece>) {
             width: 1.0 / along.y.abs(),
         },
         chain: [from.y.min(to.y), from.y.max(to.y)],
+        goes_on: false,
     });
 }
 
@@ -194,6 +197,7 @@ fn push_arc(arc: &Arc, first: usize, pieces: &mut Vec<Piece>) {
                 segment: segment(from, to, arc.radius),
             },
             chain: [from.y.min(to.y), from.y.max(to.y)],
+            goes_on: false,
         };
         match pieces
             .last()
