@@ -153,7 +153,7 @@ pub const COSTS: Costs = Costs {
     exact: 130.0,
     exact_average: 25.0,
     strips: 1e7,
-    sample: 17.0,
+    sample: 26.0,
     triangle: 4e4,
     hard_triangle: 400.0,
 };

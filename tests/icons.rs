@@ -191,21 +191,32 @@ fn print_times(what: &str, times: &mut [(f64, &String)]) {
 
 #[test]
 fn fifty_icons_keep_their_tolerance() {
-    let lines = include_str!("../fixtures/icons.tsv").lines();
-    let icons: Vec<Icon> = lines
-        .map(|line| {
-            let (name, data) = line.split_once('\t').unwrap();
-            Icon {
-                name: name.to_owned(),
-                paths: vec![(data.to_owned(), FillRule::NonZero)],
-                side: 24.0,
-            }
-        })
-        .collect();
+    let icons = icons_of(include_str!("../fixtures/icons.tsv"));
     assert_eq!(icons.len(), 50);
     draw_all(&icons, 16);
     let quick = MeshOptions::new(Tolerance::ONE_LEVEL).quick();
     mesh_all(&icons, quick, 1.0, 16);
+}
+
+/// Where ends of penumbrae bend density to both sides, samples of a mesh may show nothing of what is between them.
+#[test]
+fn nothing_hides_between_samples() {
+    let icons = icons_of(include_str!("../fixtures/icons-bent.tsv"));
+    let quick = MeshOptions::new(Tolerance::ONE_LEVEL).quick();
+    mesh_all(&icons, quick, 1.0, 1);
+}
+
+/// Icons of lines with a name and path data.
+fn icons_of(lines: &str) -> Vec<Icon> {
+    let icon = |line: &str| {
+        let (name, data) = line.split_once('\t').unwrap();
+        Icon {
+            name: name.to_owned(),
+            paths: vec![(data.to_owned(), FillRule::NonZero)],
+            side: 24.0,
+        }
+    };
+    lines.lines().map(icon).collect()
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Triangles by halving squares, for outlines whose detail is no larger than some penumbra radii, such as icons.
 //!
-//! Densities are sampled on a square lattice, so and so many samples a penumbra radius. Squares of them are halved along a
+//! Densities are sampled on a square lattice, so and so many samples a penumbra radius, and in the middle between four samples each,
+//! which no sample tells of where ends of penumbrae bend density to both sides. Squares of samples are halved along a
 //! diagonal, and the right triangles that result are halved again, from the right angle to the middle of the longest side,
 //! wherever one leaves the [tube](tube::Tube) of what the tolerance allows about the samples. A side is halved for both of its
 //! triangles or for neither, so all meet edge to edge (Evans, Kirkpatrick & Townsend 2001, "Right-triangulated irregular
@@ -257,10 +258,15 @@ impl HalvingScratch {
             tiles,
             ..
         } = self;
-        let samples = tube.begin(lattice.size);
+        let [samples, centers] = tube.begin(lattice.size);
+        let between = Lattice {
+            corner: lattice.corner + lattice.pitch / 2.0,
+            ..*lattice
+        };
         let level = scratch.level();
         dispatch!(level, simd => {
             tiles.fill(simd, folded, radius, lattice, samples);
+            tiles.fill(simd, folded, radius, &between, centers);
         });
         let hidden = (HIDDEN / levels).clamp(HIDDEN, 1.0) as f32;
         let tube = &mut self.tube;

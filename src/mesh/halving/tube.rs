@@ -32,6 +32,8 @@ pub(super) struct Tube {
     size: [usize; 2],
     limit: f32,
     densities: Vec<f32>,
+    /// Those in the middle between each sample, the next and the two below.
+    centers: Vec<f32>,
     /// What vertices have instead, so that triangles are off both ways.
     balanced: Vec<f32>,
     least: Vec<f32>,
@@ -70,12 +72,14 @@ pub(super) struct Right {
 }
 
 impl Tube {
-    /// Takes memory for so many columns and rows of samples, all 0, and hands it out to be filled.
-    pub(super) fn begin(&mut self, size: [usize; 2]) -> &mut [f32] {
+    /// Takes memory for so many columns and rows of samples and as many between them, all 0, and hands it out to be filled.
+    pub(super) fn begin(&mut self, size: [usize; 2]) -> [&mut [f32]; 2] {
         self.size = size;
-        self.densities.clear();
-        self.densities.resize(size[0] * size[1], 0.0);
-        &mut self.densities
+        for densities in [&mut self.densities, &mut self.centers] {
+            densities.clear();
+            densities.resize(size[0] * size[1], 0.0);
+        }
+        [&mut self.densities, &mut self.centers]
     }
 
     /// Columns and rows.
@@ -95,13 +99,14 @@ impl Tube {
     /// Between two samples density is off their chord by a [part](BETWEEN) of the second difference, up where it is negative and
     /// down where it is positive. What is known of it along rows and along columns adds up, as where two ends of penumbrae cross,
     /// and what is known of it along both diagonals, if one bends up and the other down: rows and columns show nothing of that.
-    /// Across an end that is slanted, the longest sides of triangles pass samples that are farther apart than along rows.
+    /// In the middle of diagonals, where triangles' longest sides pass samples that are farther apart than along rows, it is sampled:
+    /// of 2,077 icons 5 passed the tolerance there, by up to an eighth, while samples alone told of it.
     #[inline(always)]
     pub(super) fn surround(&mut self, limit: f32, hidden: f32) -> f32 {
         let [columns, rows] = self.size;
         let count = columns * rows;
         self.limit = limit;
-        for density in &mut self.densities {
+        for density in self.densities.iter_mut().chain(&mut self.centers) {
             // Sums over many edges leave some rounding where there is nothing, or all.
             *density = if *density < NOISE { 0.0 } else { *density };
             *density = if *density > 1.0 - NOISE {
@@ -126,9 +131,23 @@ impl Tube {
             let bounds = self.least[inner.clone()]
                 .iter_mut()
                 .zip(&mut self.most[inner.clone()]);
-            let samples = above.zip(here).zip(below);
+            let [over, under] = [start - columns, start]
+                .map(|start| self.centers[start..start + columns - 1].windows(2));
+            let samples = above.zip(here).zip(below).zip(over.zip(under));
             let found = bounds.zip(&mut bends[inner]);
-            for (((above, here), below), ((least, most), bend)) in samples.zip(found) {
+            for ((((above, here), below), (over, under)), ((least, most), bend)) in
+                samples.zip(found)
+            {
+                // How far the chords along diagonals are above density.
+                let half = 0.5 * here[1];
+                let off = [
+                    half + 0.5 * above[0] - over[0],
+                    half + 0.5 * above[2] - over[1],
+                    half + 0.5 * below[0] - under[0],
+                    half + 0.5 * below[2] - under[1],
+                ];
+                let lowest = smaller(smaller(off[0], off[1]), smaller(off[2], off[3]));
+                let highest = larger(larger(off[0], off[1]), larger(off[2], off[3]));
                 let twice = 2.0 * here[1];
                 let along = here[0] + here[2] - twice;
                 let across = above[1] + below[1] - twice;
@@ -138,8 +157,8 @@ impl Tube {
                 let low = smaller(along, 0.0) + smaller(across, 0.0) - saddle;
                 let high = larger(along, 0.0) + larger(across, 0.0) + saddle;
                 let seen = hidden * BETWEEN * larger(high, -low);
-                let low = BETWEEN * smaller(low, smaller(down, up));
-                let high = BETWEEN * larger(high, larger(down, up));
+                let low = smaller(BETWEEN * low, lowest);
+                let high = larger(BETWEEN * high, highest);
                 *least = here[1] - low - limit;
                 *most = here[1] - high + limit;
                 // What vertices may have is from 0 to 1.
