@@ -1,4 +1,5 @@
-//! `direct`: the closed form in single precision: by bands of four rows where pixels see discs, row by row where they are averages.
+//! `direct`: the closed form in single precision: by bands of four rows where pixels see few discs, row by row where they average over
+//! many or over squares.
 //!
 //! Error: 0.05 level from rounding and from its polynomials; below r = 3 px, where a pixel is an average over a square,
 //! 0.8 level from its quadrature.
@@ -62,7 +63,7 @@ pub(crate) fn fill<S: Simd>(
         wanted_of_rows,
         ..
     } = scratch;
-    // What is wide is seen so that pieces pass it, row by row.
+    // Where pieces pass all that a pixel averages over, each row has its own that stands for their chain.
     if sampling.window == Window::Disc && points.wide.is_none() {
         bands.load(placed);
         fill_bands(

@@ -297,20 +297,15 @@ impl Rows {
         let mut at = columns.start;
         let mut next = 0;
         while next < self.order.len() && at < columns.end {
-            // Entries that follow each other without a gap are one cluster.
             let start = next;
-            let first = self.entries[self.order[next] as usize].first;
-            let mut end = first;
-            let mut after = base;
-            while let Some(&index) = self.order.get(next) {
-                let entry = &self.entries[index as usize];
-                if next > start && entry.first > end {
-                    break;
-                }
-                end = end.max(entry.end);
-                after += entry.step;
-                next += 1;
-            }
+            let ([first, end], stop) = cluster(next, self.order.len(), |at| {
+                let entry = &self.entries[self.order[at] as usize];
+                [entry.first, entry.end]
+            });
+            next = stop;
+            let entries = self.order[start..next].iter();
+            let steps = entries.map(|&index| self.entries[index as usize].step);
+            let after = base + steps.sum::<i64>();
             let (from, to) = (first.clamp(at, columns.end), end.clamp(at, columns.end));
             self.push_constant(at..from, base);
             if to > from {
@@ -542,6 +537,23 @@ impl<S: Simd> Stroke<'_, S> {
             columns += self.step;
         }
     }
+}
+
+/// The columns of the entries from one on that follow each other without a gap, and the first of those after them; `reached` tells each
+/// one's first column and its end.
+#[inline(always)]
+fn cluster(start: usize, count: usize, reached: impl Fn(usize) -> [i64; 2]) -> ([i64; 2], usize) {
+    let [first, mut end] = reached(start);
+    let mut next = start + 1;
+    while next < count {
+        let [other, other_end] = reached(next);
+        if other > end {
+            break;
+        }
+        end = end.max(other_end);
+        next += 1;
+    }
+    ([first, end], next)
 }
 
 fn density(steps: i64) -> f32 {

@@ -141,8 +141,39 @@ impl Tiles {
     ) {
         let scale = 1.0 / radius;
         self.load(edges, scale, |point| (point - lattice.corner) * scale);
-        let step = lattice.pitch * scale;
-        let [columns, rows] = lattice.size;
+        self.draw(simd, lattice.pitch * scale, lattice.size, densities);
+    }
+
+    /// Puts the densities of the same outline in the middles between the samples, to the right of each and below.
+    // One copy a SIMD level.
+    #[inline(never)]
+    pub(crate) fn fill_middles<S: Simd>(
+        &mut self,
+        simd: S,
+        radius: f64,
+        lattice: &Lattice,
+        densities: &mut [f32],
+    ) {
+        let step = lattice.pitch / radius;
+        for piece in &mut self.pieces {
+            for y in [&mut piece.low, &mut piece.high] {
+                *y -= step / 2.0;
+            }
+            for end in [&mut piece.from, &mut piece.to] {
+                *end -= step / 2.0;
+            }
+        }
+        self.draw(simd, step, lattice.size, densities);
+    }
+
+    #[inline(always)]
+    fn draw<S: Simd>(
+        &mut self,
+        simd: S,
+        step: f64,
+        [columns, rows]: [usize; 2],
+        densities: &mut [f32],
+    ) {
         self.active.clear();
         let mut reached = 0;
         for row in 0..rows / SIDE {

@@ -259,14 +259,10 @@ impl HalvingScratch {
             ..
         } = self;
         let [samples, centers] = tube.begin(lattice.size);
-        let between = Lattice {
-            corner: lattice.corner + lattice.pitch / 2.0,
-            ..*lattice
-        };
         let level = scratch.level();
         dispatch!(level, simd => {
             tiles.fill(simd, folded, radius, lattice, samples);
-            tiles.fill(simd, folded, radius, &between, centers);
+            tiles.fill_middles(simd, radius, lattice, centers);
         });
         let hidden = (HIDDEN / levels).clamp(HIDDEN, 1.0) as f32;
         let tube = &mut self.tube;

@@ -225,20 +225,17 @@ impl Bands {
         let mut at = columns.start;
         let mut next = 0;
         while next < self.entries.len() && at < columns.end {
-            // Entries that follow each other without a gap are one cluster.
             let start = next;
-            let first = self.entries[next].first;
-            let mut end = first;
+            let ([first, end], stop) = super::cluster(next, self.entries.len(), |at| {
+                let entry = &self.entries[at];
+                [entry.first, entry.end]
+            });
+            next = stop;
             let mut after = base;
-            while let Some(entry) = self.entries.get(next) {
-                if next > start && entry.first > end {
-                    break;
-                }
-                end = end.max(entry.end);
+            for entry in &self.entries[start..next] {
                 for (after, step) in after.iter_mut().zip(entry.steps) {
                     *after += step;
                 }
-                next += 1;
             }
             let (from, to) = (first.clamp(at, columns.end), end.clamp(at, columns.end));
             self.push_constant(at..from, base);
