@@ -76,34 +76,22 @@ pub(crate) fn to_tiles(columns: &Range<i64>) -> Range<i64> {
     columns.start.div_euclid(BAND) * BAND..(columns.end + BAND - 1).div_euclid(BAND) * BAND
 }
 
-/// The rows of a tile's lanes.
-#[inline(always)]
-fn rows<S: Simd>(simd: S) -> f32x16<S> {
-    const ROWS: [f32; LANES] = {
-        let mut rows = [0.0; LANES];
-        let mut lane = 0;
-        while lane < LANES {
-            rows[lane] = (lane / SIDE) as f32;
-            lane += 1;
-        }
-        rows
-    };
-    f32x16::from_slice(simd, &ROWS)
-}
+/// The row and the column of each of a tile's lanes.
+const PLACES: [[f32; LANES]; 2] = {
+    let mut places = [[0.0; LANES]; 2];
+    let mut lane = 0;
+    while lane < LANES {
+        places[0][lane] = (lane / SIDE) as f32;
+        places[1][lane] = (lane % SIDE) as f32;
+        lane += 1;
+    }
+    places
+};
 
-/// The columns of a tile's lanes.
+/// How far below a band's first row each lane's pixel is, for rows `pitch` apart.
 #[inline(always)]
-fn columns<S: Simd>(simd: S) -> f32x16<S> {
-    const COLUMNS: [f32; LANES] = {
-        let mut columns = [0.0; LANES];
-        let mut lane = 0;
-        while lane < LANES {
-            columns[lane] = (lane % SIDE) as f32;
-            lane += 1;
-        }
-        columns
-    };
-    f32x16::from_slice(simd, &COLUMNS)
+fn down<S: Simd>(simd: S, pitch: f64) -> f32x16<S> {
+    f32x16::from_slice(simd, &PLACES[0]) * pitch as f32
 }
 
 impl Bands {
@@ -167,7 +155,7 @@ impl Bands {
         self.top = top;
         let next = pieces.get(self.reached).map_or(f64::INFINITY, |p| p.low);
         self.still_until = next - reach;
-        let down = rows(simd) * lattice.pitch as f32;
+        let down = down(simd, lattice.pitch);
         for &index in &self.active {
             let piece = &pieces[index as usize];
             let still = piece.is_upright() && piece.low <= top - reach;
@@ -272,16 +260,19 @@ impl Bands {
         self.lay_steps(simd, &cluster, &columns, base);
         let down = simd.vectorize(
             #[inline(always)]
-            || rows(simd) * lattice.pitch as f32,
+            || down(simd, lattice.pitch),
         );
         for entry in &self.entries[cluster] {
             let from = entry.first.max(columns.start);
             let to = entry.end.min(columns.end);
             let piece = &self.pieces[entry.piece as usize];
+            if from >= to {
+                continue;
+            }
             for line in points.lines {
                 let top = self.top + line.offset;
                 let bottom = top + HEIGHT * lattice.pitch;
-                if from >= to || piece.low >= bottom + 1.0 || piece.high <= top - 1.0 {
+                if piece.low >= bottom + 1.0 || piece.high <= top - 1.0 {
                     continue;
                 }
                 let place = |column: i64| (column - columns.start) as usize * SIDE;
@@ -305,7 +296,8 @@ impl Bands {
                             let halves = piece.halves(simd, top, down);
                             let stroke = Stroke {
                                 form: piece.seen_from(&view, bottom, halves),
-                                columns: self::columns(simd) + (column - origin) as f32,
+                                columns: f32x16::from_slice(simd, &PLACES[1])
+                                    + (column - origin) as f32,
                                 step: SIDE as f32,
                                 halves,
                                 line,
