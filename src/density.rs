@@ -254,13 +254,11 @@ mod tests {
         assert_eq!(averaged_side(100.0), 0.0);
     }
 
-    /// Every level that this machine has, the scalar one first where it was asked for:
-    /// `RUSTFLAGS='--cfg penumbral_scalar' cargo test --lib every_simd_level`.
+    /// Every level that this machine has.
+    #[cfg(not(penumbral_scalar))]
     fn levels() -> Vec<Level> {
         let best = Level::new();
         let mut levels = Vec::new();
-        #[cfg(penumbral_scalar)]
-        levels.push(Level::Fallback(fearless_simd::Fallback::new()));
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         {
             levels.extend(best.as_sse2().map(Level::Sse2));
@@ -269,6 +267,14 @@ mod tests {
         }
         levels.push(best);
         levels
+    }
+
+    /// The scalar level and the best, with which all others are compared where it was not asked for:
+    /// `RUSTFLAGS='--cfg penumbral_scalar' cargo test --lib every_simd_level`.
+    #[cfg(penumbral_scalar)]
+    fn levels() -> Vec<Level> {
+        let scalar = Level::Fallback(fearless_simd::Fallback::new());
+        vec![scalar, Level::new()]
     }
 
     fn shapes() -> Vec<Shape> {
