@@ -22,7 +22,7 @@ const GOLDEN: [(&str, u64); 11] = [
     ("points", 0xed85_f785_6936_3e8b),
     ("dithered paint", 0xa426_0f57_f04f_7121),
     ("masks", 0x9fa6_92f9_d4c9_4c87),
-    ("meshes", 0x9c80_d7ea_9403_5139),
+    ("meshes", 0xf130_38c0_6894_fc03),
     ("pictures", 0x849b_bce3_4025_ce19),
     ("svg", 0x47dc_6abc_7653_8a8c),
 ];

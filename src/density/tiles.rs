@@ -9,7 +9,7 @@
 use core::f32::consts::FRAC_1_PI;
 use core::iter::once;
 
-use fearless_simd::{Simd, SimdBase, f32x16};
+use fearless_simd::{Simd, SimdBase, SimdCombine, f32x4, f32x8, f32x16};
 use glam::DVec2;
 
 use super::lanes::LANES;
@@ -17,7 +17,10 @@ use super::rows::{self, arc_chord, each_line, half_discs, line_at};
 use crate::outline::Edge;
 
 /// Samples along a tile's sides.
-const SIDE: usize = 4;
+pub(crate) const SIDE: usize = 4;
+
+/// Places to a sample, at most: memory is taken for so many.
+const PLACES: usize = 6;
 
 /// From a tile's middle to its outer samples, in samples.
 const REACH: f64 = (SIDE as f64 - 1.0) / 2.0;
@@ -70,12 +73,57 @@ pub(crate) struct Tiles {
     pieces: Vec<Piece>,
     /// Those that a row of tiles may meet.
     active: Vec<u32>,
-    /// What pieces cut of the discs of each tile.
+    /// What pieces cut of the discs of each tile, place by place.
     cut: Vec<[f32; LANES]>,
     /// What changes from tile to tile of what lies beside, row by row of samples.
     beside: Vec<[i32; SIDE]>,
     /// The same of the area inside: about the lattice's first column, and how much less of it there is with x.
     inside: Vec<[f64; 2]>,
+}
+
+/// Where densities are taken: so many places to each sample.
+#[derive(Debug, Clone, Copy)]
+struct Places<const N: usize> {
+    /// From each sample to its places, in radii.
+    offsets: [DVec2; N],
+    /// From sample to sample, and the largest of the offsets.
+    step: f64,
+    far: f64,
+    /// A tile's places, each by all its samples, about the middle of these.
+    xs: [[f32; LANES]; N],
+    ys: [[f32; LANES]; N],
+    /// The y of the tile's rows at two places, and again: the last half are unused.
+    downs: [[f32; LANES]; N],
+}
+
+impl<const N: usize> Places<N> {
+    fn new(offsets: [[f64; 2]; N], step: f64) -> Self {
+        let offsets = offsets.map(|offset| DVec2::from(offset) * step);
+        let far = offsets.iter().map(|offset| offset.max_element());
+        let [mut xs, mut ys, mut downs] = [[[0.0; LANES]; N]; 3];
+        let from_middle = |at: usize| (at as f64 - REACH) * step;
+        for place in 0..N {
+            for lane in 0..LANES {
+                let of = (2 * place + lane % (2 * SIDE) / SIDE).min(N - 1);
+                xs[place][lane] = (from_middle(lane % SIDE) + offsets[place].x) as f32;
+                ys[place][lane] = (from_middle(lane / SIDE) + offsets[place].y) as f32;
+                downs[place][lane] = (from_middle(lane % SIDE) + offsets[of].y) as f32;
+            }
+        }
+        Self {
+            offsets,
+            step,
+            far: far.fold(0.0, f64::max),
+            xs,
+            ys,
+            downs,
+        }
+    }
+
+    /// From the middle of a tile's places to the outer ones.
+    fn reach(&self) -> f64 {
+        REACH * self.step + self.far / 2.0
+    }
 }
 
 /// How far lines in place of an edge may move a density where one of them lies across the disc's edge.
@@ -92,15 +140,11 @@ fn share(edge: &Edge) -> f64 {
     }
 }
 
-/// The places of a tile's samples about its middle.
-struct Places<S: Simd> {
-    x: f32x16<S>,
-    y: f32x16<S>,
-}
-
 impl Tiles {
-    /// Takes edges; `place` puts a point in units of the radius about the lattice's first sample.
-    fn load(&mut self, edges: &[Edge], scale: f64, place: impl Fn(DVec2) -> DVec2 + Copy) {
+    /// Takes the outline whose densities are drawn from then on.
+    pub(crate) fn load(&mut self, edges: &[Edge], radius: f64, lattice: &Lattice) {
+        let scale = 1.0 / radius;
+        let place = |point: DVec2| (point - lattice.corner) * scale;
         self.pieces.clear();
         let mut push = |from: DVec2, to: DVec2| {
             // A level line adds nothing: its ends' neighbours tell of it.
@@ -127,58 +171,30 @@ impl Tiles {
         rows::sort(&mut self.pieces, |p| [p.low, p.high, p.from.x, p.to.x]);
     }
 
-    /// Puts the densities of an outline at all samples of a lattice, row by row. Its columns and rows are multiples of a tile's side and one
-    /// more: the last of each are beyond the shadow.
+    /// Puts densities at `offsets` from all samples of a lattice, in samples and not less than 0, row by row, or from those in the tiles
+    /// alone that are wanted, if that is told: what is put elsewhere is undefined. The lattice's columns and rows are multiples of a
+    /// tile's side and one more: the last of each are beyond the shadow.
     // One copy a SIMD level.
     #[inline(never)]
-    pub(crate) fn fill<S: Simd>(
-        &mut self,
-        simd: S,
-        edges: &[Edge],
-        radius: f64,
-        lattice: &Lattice,
-        densities: &mut [f32],
-    ) {
-        let scale = 1.0 / radius;
-        self.load(edges, scale, |point| (point - lattice.corner) * scale);
-        self.draw(simd, lattice.pitch * scale, lattice.size, densities);
-    }
-
-    /// Puts the densities of the same outline in the middles between the samples, to the right of each and below.
-    // One copy a SIMD level.
-    #[inline(never)]
-    pub(crate) fn fill_middles<S: Simd>(
+    pub(crate) fn fill<S: Simd, const N: usize>(
         &mut self,
         simd: S,
         radius: f64,
         lattice: &Lattice,
-        densities: &mut [f32],
+        offsets: [[f64; 2]; N],
+        wanted: Option<&[bool]>,
+        mut densities: [&mut [f32]; N],
     ) {
         let step = lattice.pitch / radius;
-        for piece in &mut self.pieces {
-            for y in [&mut piece.low, &mut piece.high] {
-                *y -= step / 2.0;
-            }
-            for end in [&mut piece.from, &mut piece.to] {
-                *end -= step / 2.0;
-            }
-        }
-        self.draw(simd, step, lattice.size, densities);
-    }
-
-    #[inline(always)]
-    fn draw<S: Simd>(
-        &mut self,
-        simd: S,
-        step: f64,
-        [columns, rows]: [usize; 2],
-        densities: &mut [f32],
-    ) {
+        let places = Places::new(offsets, step);
+        let [columns, rows] = lattice.size;
+        let tiles = columns / SIDE;
         self.active.clear();
         let mut reached = 0;
         for row in 0..rows / SIDE {
-            let middle = (row * SIDE) as f64 * step + REACH * step;
-            let reach = 1.0 + REACH * step;
+            let top = (row * SIDE) as f64 * step;
+            let middle = top + places.reach();
+            let reach = 1.0 + places.reach();
             while let Some(piece) = self.pieces.get(reached).filter(|p| p.low < middle + reach) {
                 if piece.high > middle - reach {
                     self.active.push(reached as u32);
@@ -188,26 +204,42 @@ impl Tiles {
             let pieces = &self.pieces;
             self.active
                 .retain(|&index| pieces[index as usize].high > middle - reach);
-            let start = row * SIDE * columns;
-            let densities = &mut densities[start..start + SIDE * columns];
+            let wanted = wanted.map(|wanted| &wanted[row * tiles..][..tiles]);
+            if wanted.is_some_and(|wanted| !wanted.contains(&true)) {
+                continue;
+            }
+            let rows = row * SIDE * columns..(row + 1) * SIDE * columns;
             if self.active.is_empty() {
-                densities.fill(0.0);
+                for densities in &mut densities {
+                    densities[rows.clone()].fill(0.0);
+                }
                 continue;
             }
             simd.vectorize(
                 #[inline(always)]
                 || {
-                    self.add_pieces(simd, middle, step, columns / SIDE);
-                    self.give(step, densities);
+                    self.add_pieces(simd, top, &places, tiles, wanted);
+                    for (place, densities) in densities.iter_mut().enumerate() {
+                        self.give(&places, place, &mut densities[rows.clone()]);
+                    }
                 },
             );
         }
-        densities[(rows - 1) * columns..].fill(0.0);
+        for densities in densities {
+            densities[(rows - 1) * columns..].fill(0.0);
+        }
     }
 
-    /// Adds up what the active pieces are to a row of tiles about the y given.
+    /// Adds up what the active pieces are to a row of tiles whose first samples have the y given.
     #[inline(always)]
-    fn add_pieces<S: Simd>(&mut self, simd: S, middle: f64, step: f64, tiles: usize) {
+    fn add_pieces<S: Simd, const N: usize>(
+        &mut self,
+        simd: S,
+        top: f64,
+        places: &Places<N>,
+        tiles: usize,
+        wanted: Option<&[bool]>,
+    ) {
         let Self {
             pieces,
             active,
@@ -215,37 +247,52 @@ impl Tiles {
             beside,
             inside,
         } = self;
+        let step = places.step;
+        let middle = top + REACH * step;
         cut.clear();
-        cut.resize(tiles, [0.0; LANES]);
+        cut.reserve(tiles * PLACES);
+        cut.resize(tiles * N, [0.0; LANES]);
         beside.clear();
-        beside.resize(tiles + 1, [0; SIDE]);
+        beside.reserve((tiles + 1) * PLACES);
+        beside.resize((tiles + 1) * N, [0; SIDE]);
         inside.clear();
         inside.resize(tiles + 1, [0.0; 2]);
-        let (mut xs, mut ys) = ([0.0; LANES], [0.0; LANES]);
-        for lane in 0..LANES {
-            xs[lane] = (((lane % SIDE) as f64 - REACH) * step) as f32;
-            ys[lane] = (((lane / SIDE) as f64 - REACH) * step) as f32;
-        }
-        let places = Places {
-            x: f32x16::from_slice(simd, &xs),
-            y: f32x16::from_slice(simd, &ys),
-        };
+        let load = |numbers: &[f32; LANES]| f32x16::from_slice(simd, numbers);
+        let (xs, ys) = (
+            places.xs.each_ref().map(load),
+            places.ys.each_ref().map(load),
+        );
+        let downs = places.downs.each_ref().map(load);
+        let zero = f32x16::splat(simd, 0.0);
+        let mut rows = [[0.0; LANES]; N];
         for &index in &*active {
             let piece = &pieces[index as usize];
-            let from = f32x16::splat(simd, (piece.from.y - middle) as f32) - places.y;
-            let to = f32x16::splat(simd, (piece.to.y - middle) as f32) - places.y;
-            let halves = [half_discs(simd, from), half_discs(simd, to)];
-            let [first, enters, leaves, last] = piece.parts(middle, step, tiles);
-            let (mut from, mut to) = ([0.0; LANES], [0.0; LANES]);
-            halves[0].store_slice(&mut from);
-            halves[1].store_slice(&mut to);
-            for place in [first, last] {
-                for (row, change) in beside[place].iter_mut().enumerate() {
-                    let lane = row * SIDE;
-                    // Each end is rounded alone, so that what follows cancels it.
-                    let risen = (to[lane] * UNIT) as i32 - (from[lane] * UNIT) as i32;
-                    *change = change.wrapping_sub(risen);
+            let [first, enters, leaves, last] = piece.parts(top, places, tiles);
+            let along = piece.along.as_vec2().to_array();
+            let length = piece.length as f32;
+            let (mut halves, mut distance_at, mut start_at) =
+                ([[zero; 2]; N], [zero; N], [zero; N]);
+            let ends = [piece.from.y, piece.to.y].map(|y| (y - middle) as f32);
+            let ends = f32x8::splat(simd, ends[0]).combine(f32x8::splat(simd, ends[1]));
+            for pair in 0..N.div_ceil(2) {
+                half_discs(simd, ends - downs[pair]).store_slice(&mut rows[pair]);
+            }
+            for place in 0..N {
+                let first_row = place % 2 * SIDE;
+                let ends = [first_row, LANES / 2 + first_row].map(|row| {
+                    let rows = rows[place / 2][row..].first_chunk::<SIDE>();
+                    rows.map_or([0.0; SIDE], |rows| *rows)
+                });
+                for tile in [first, last] {
+                    for (row, change) in beside[tile * N + place].iter_mut().enumerate() {
+                        // Each end is rounded alone, so that what follows cancels it.
+                        let risen = (ends[1][row] * UNIT) as i32 - (ends[0][row] * UNIT) as i32;
+                        *change = change.wrapping_sub(risen);
+                    }
                 }
+                halves[place] = [spread(simd, ends[0]), spread(simd, ends[1])];
+                distance_at[place] = ys[place] * along[0] - xs[place] * along[1];
+                start_at[place] = -(xs[place] * along[0] + ys[place] * along[1]);
             }
             let rise = piece.to.y - piece.from.y;
             let area = (piece.from.x + piece.to.x) * 0.5 * rise;
@@ -253,39 +300,42 @@ impl Tiles {
             inside[enters][1] += rise;
             inside[leaves][0] -= area;
             inside[leaves][1] -= rise;
-            let along = piece.along.as_vec2().to_array();
-            let length = piece.length as f32;
-            // Relative to a tile's middle by double precision.
-            let distance_at = places.y * along[0] - places.x * along[1];
-            let start_at = -(places.x * along[0] + places.y * along[1]);
             for tiles in [first..enters, leaves..last] {
                 for tile in tiles {
+                    if wanted.is_some_and(|wanted| !wanted[tile]) {
+                        continue;
+                    }
                     let x = ((tile * SIDE) as f64 + REACH) * step;
                     let seen = piece.from - DVec2::new(x, middle);
-                    let distance = distance_at + seen.perp_dot(piece.along) as f32;
-                    let start = start_at + seen.dot(piece.along) as f32;
-                    let added = line_at(simd, distance, start, length, along, halves);
-                    let sum = f32x16::from_slice(simd, &cut[tile]) + added;
-                    sum.store_slice(&mut cut[tile]);
+                    let (across, ahead) = (seen.perp_dot(piece.along), seen.dot(piece.along));
+                    for place in 0..N {
+                        let distance = distance_at[place] + across as f32;
+                        let start = start_at[place] + ahead as f32;
+                        let added = line_at(simd, distance, start, length, along, halves[place]);
+                        let cut = &mut cut[tile * N + place];
+                        let sum = f32x16::from_slice(simd, cut) + added;
+                        sum.store_slice(cut);
+                    }
                 }
             }
         }
     }
 
-    /// Adds up what is seen from the tiles of a row, from the left to the right.
+    /// Adds up what is seen from one of the places of a row of tiles, from the left to the right.
     #[inline(always)]
-    fn give(&self, step: f64, densities: &mut [f32]) {
+    fn give<const N: usize>(&self, places: &Places<N>, place: usize, densities: &mut [f32]) {
         let columns = densities.len() / SIDE;
+        let step = places.step;
         let mut beside = [0_i32; SIDE];
         let mut inside = [0.0; 2];
-        let changes = self.beside.iter().zip(&self.inside);
-        for (tile, (cut, (steps, areas))) in self.cut.iter().zip(changes).enumerate() {
+        for (tile, areas) in self.inside[..columns / SIDE].iter().enumerate() {
+            let (cut, steps) = (&self.cut[tile * N + place], self.beside[tile * N + place]);
             for row in 0..SIDE {
                 beside[row] = beside[row].wrapping_add(steps[row]);
             }
             inside[0] += areas[0];
             inside[1] += areas[1];
-            let first = (tile * SIDE) as f64 * step;
+            let first = (tile * SIDE) as f64 * step + places.offsets[place].x;
             let start = (inside[0] - inside[1] * first) as f32 * FRAC_1_PI;
             let growth = (-inside[1] * step) as f32 * FRAC_1_PI;
             for row in 0..SIDE {
@@ -304,11 +354,20 @@ impl Tiles {
     }
 }
 
+/// A number for each row of a tile, at all samples of the row.
+#[inline(always)]
+fn spread<S: Simd>(simd: S, [a, b, c, d]: [f32; SIDE]) -> f32x16<S> {
+    let row = |number: f32| f32x4::splat(simd, number);
+    let (first, last) = (row(a).combine(row(b)), row(c).combine(row(d)));
+    first.combine(last)
+}
+
 impl Piece {
-    /// What it is to the tiles of a row about the y given.
+    /// What it is to the tiles of a row whose first samples have the y given.
     #[inline(always)]
-    fn parts(&self, middle: f64, step: f64, tiles: usize) -> Parts {
-        let spread = REACH * step;
+    fn parts<const N: usize>(&self, top: f64, places: &Places<N>, tiles: usize) -> Parts {
+        let (step, spread) = (places.step, places.reach());
+        let middle = top + spread;
         let (low, high) = (self.low - middle, self.high - middle);
         // Where the part that discs reach is, and half of the chord at the y nearest to theirs.
         let reach = 1.0 + spread;
@@ -335,7 +394,7 @@ impl Piece {
         let leaves = (self.from.x + chords[0]).min(self.to.x + chords[1]);
 
         let per_tile = 1.0 / (SIDE as f64 * step);
-        let wide = (SIDE as f64 - 1.0) * step;
+        let wide = 2.0 * spread;
         // The first tile that begins after an x, and the first that does not end before it.
         let begins = |x: f64| ((x * per_tile).ceil().max(0.0) as usize).min(tiles);
         let ends = |x: f64| (((x - wide) * per_tile).floor() + 1.0).max(0.0) as usize;
@@ -397,7 +456,10 @@ mod tests {
             size: [columns, rows],
         };
         let mut tiles = Tiles::default();
-        dispatch!(Level::new(), simd => tiles.fill(simd, &edges, radius, &lattice, &mut densities));
+        tiles.load(&edges, radius, &lattice);
+        dispatch!(Level::new(), simd => {
+            tiles.fill(simd, radius, &lattice, [[0.0; 2]], None, [&mut densities]);
+        });
         let lines = edges.iter().all(|edge| matches!(edge, Edge::Line(_)));
         let mut worst: f64 = 0.0;
         for (i, &density) in densities.iter().enumerate() {

@@ -1,17 +1,18 @@
 //! Triangles by halving squares, for outlines whose detail is no larger than some penumbra radii, such as icons.
 //!
 //! Densities are sampled on a square lattice, so and so many samples a penumbra radius, and in the middle between four samples each,
-//! which no sample tells of where ends of penumbrae bend density to both sides. Squares of samples are halved along a
+//! which no sample tells of where ends of penumbrae bend density to both sides; where density bends too much for that, it is sampled
+//! at [half the distance](finer). Squares of samples are halved along a
 //! diagonal, and the right triangles that result are halved again, from the right angle to the middle of the longest side,
 //! wherever one leaves the [tube](tube::Tube) of what the tolerance allows about the samples. A side is halved for both of its
 //! triangles or for neither, so all meet edge to edge (Evans, Kirkpatrick & Townsend 2001, "Right-triangulated irregular
 //! networks").
 //!
-//! Neither the tangent construction nor a triangulator is needed: a mesh takes about a hundred microseconds, and where detail is
-//! small it has hardly more triangles than refinement's. Sides along the axes are [folded away](folds::Folds) where they are long;
+//! Neither the tangent construction nor a triangulator is needed: a mesh takes some hundred microseconds. Sides along the axes are [folded away](folds::Folds) where they are long;
 //! along others and about large corners there are many more triangles, so such outlines are left to refinement unless speed is
 //! asked for, and so are all that bend density between samples too much, such as a circle as large as the disc.
 
+mod finer;
 mod folds;
 mod halves;
 mod tips;
@@ -22,6 +23,7 @@ use core::f64::consts::FRAC_2_PI;
 use fearless_simd::{Simd, dispatch};
 use glam::DVec2;
 
+use self::finer::{Finer, KINDS, Spot, spot_key, spot_of};
 use self::folds::{Folds, Sides};
 use self::halves::Halves;
 use self::tips::Tip;
@@ -44,6 +46,9 @@ const SAMPLES: f64 = 22.0;
 /// so many times at least.
 const LATTICES: u32 = 4;
 const FINER: f64 = 1.05;
+
+/// How many times as near to one another samples are where there are some between them.
+const TWICE: f64 = 2.0;
 
 /// How many times as many samples a penumbra radius are tried at most, and how many times as many from try to try where tips
 /// are hidden.
@@ -69,9 +74,6 @@ const MOST: usize = 1 << 20;
 /// Empty samples beside the shadow on every side, so that what lies between is seen from both.
 const MARGIN: f64 = 2.0;
 
-/// How far about a tip samples may know nothing of it, in samples.
-const TIP: f64 = 1.5;
-
 /// The part of the tolerance that samples may be off.
 const SAMPLE_SHARE: f64 = 0.05;
 
@@ -94,10 +96,11 @@ pub(crate) struct HalvingScratch {
     tips: Vec<Tip>,
     tiles: Tiles,
     tube: Tube,
+    finer: Finer,
     halves: Halves,
-    /// The triangles, by the samples at their corners and on which side of a cut each of these is.
+    /// The triangles, by the spots at their corners and on which side of a cut each of these is.
     corners: Vec<[u32; 3]>,
-    /// The number of each such sample among the vertices.
+    /// The number of each such spot among the vertices.
     numbers: Vec<u32>,
     /// Those that are vertices, by number.
     vertices: Vec<u32>,
@@ -109,22 +112,22 @@ impl Lattice {
         self.size[0] * self.size[1]
     }
 
-    /// Where the sample of a column and row is.
-    fn place(&self, sample: [usize; 2]) -> DVec2 {
-        self.corner + DVec2::from(sample.map(|at| at as f64)) * self.pitch
+    /// Where a spot is.
+    fn place(&self, spot: Spot) -> DVec2 {
+        self.corner + DVec2::from(spot.map(|at| at as f64)) * (self.pitch / 2.0)
     }
 
-    /// A sample as a number, with the sides of cuts on which it is.
-    fn key(&self, [x, y]: [usize; 2], sides: Sides) -> u32 {
+    /// A spot as a number, with the sides of cuts on which it is.
+    fn key(&self, spot: Spot, sides: Sides) -> u32 {
         let sides = usize::from(sides[0]) + 2 * usize::from(sides[1]);
-        (sides * self.count() + y * self.size[0] + x) as u32
+        (sides * KINDS * self.count()) as u32 + spot_key(spot, self.size)
     }
 
-    /// The sample and the sides of a number.
-    fn of_key(&self, key: u32) -> ([usize; 2], Sides) {
-        let (sides, sample) = (key as usize / self.count(), key as usize % self.count());
-        let sample = [sample % self.size[0], sample / self.size[0]];
-        (sample, [sides % 2 > 0, sides > 1])
+    /// The spot and the sides of a number.
+    fn of_key(&self, key: u32) -> (Spot, Sides) {
+        let all = (KINDS * self.count()) as u32;
+        let sides = key / all;
+        (spot_of(key % all, self.size), [sides % 2 == 1, sides > 1])
     }
 }
 
@@ -230,7 +233,8 @@ impl HalvingScratch {
         scratch: &Scratch,
     ) -> f64 {
         let radius = shadow.radius();
-        let end = lattice.place(lattice.size) + self.folds.offset(lattice.size, [true; 2]);
+        let end = lattice.size.map(|count| 2 * count);
+        let end = lattice.place(end) + self.folds.offset(end, [true; 2]);
         let far = lattice.corner.abs().max(end.abs());
         // Density changes by at most 2 / π over the radius.
         let rounding = 255.0 * far.max_element() * f64::from(f32::EPSILON) * FRAC_2_PI / radius;
@@ -240,48 +244,63 @@ impl HalvingScratch {
         let unsure = SAMPLE_SHARE * levels + tiles::ROUNDING + rounding;
         let limit = SAMPLED * (levels - unsure) / 255.0;
         tips::find(&self.folded, radius, &mut self.tips);
-        let hides = |finer: f64| {
+        // Where tips are, samples between samples may be needed.
+        let hides = |times: f64| {
             let mut tips = self.tips.iter();
-            tips.any(|tip| tip.height(lattice.pitch / finer, radius) > limit)
+            let pitch = lattice.pitch / (times * TWICE);
+            tips.any(|tip| tip.height(pitch, radius) > limit)
         };
-        let mut finer = 1.0;
-        while hides(finer) && finer <= FINEST {
-            finer *= FINER_FOR_TIPS;
+        let mut times = 1.0;
+        while hides(times) && times <= FINEST {
+            times *= FINER_FOR_TIPS;
         }
-        if finer > 1.0 {
-            return finer;
+        if times > 1.0 {
+            return times;
         }
         let limit = limit as f32;
+        let hidden = (HIDDEN / levels).clamp(HIDDEN, 1.0) as f32;
         let Self {
             folded,
-            tube,
+            tips,
             tiles,
+            tube,
+            finer,
             ..
         } = self;
         let [samples, centers] = tube.begin(lattice.size);
         let level = scratch.level();
+        tiles.load(folded, radius, lattice);
+        let offsets = [[0.0; 2], [0.5; 2]];
         dispatch!(level, simd => {
-            tiles.fill(simd, folded, radius, lattice, samples);
-            tiles.fill_middles(simd, radius, lattice, centers);
+            tiles.fill(simd, radius, lattice, offsets, None, [samples, centers]);
         });
-        let hidden = (HIDDEN / levels).clamp(HIDDEN, 1.0) as f32;
-        let tube = &mut self.tube;
-        let bend = dispatch!(level, simd => simd.vectorize(
+        dispatch!(level, simd => simd.vectorize(
             #[inline(always)]
             || tube.surround(limit, hidden),
         ));
-        for tip in &self.tips {
-            let place = (tip.center - lattice.corner) / lattice.pitch;
+        for tip in &*tips {
             let height = tip.height(lattice.pitch, radius) as f32;
-            tube.narrow(place, tip.miss / lattice.pitch + TIP, height);
+            tube.narrow(tip.place(lattice), tip.reach(lattice.pitch), height);
         }
         // At the penumbra's ends, where it bends most, density goes with the power 1.5.
-        let times = libm::cbrt(f64::from(bend * bend));
-        if times > 1.0 || tube.is_open() {
-            times
-        } else {
-            FINER
+        let times_for = |bend: f32| libm::cbrt(f64::from(bend * bend));
+        let times = times_for(tube.worst());
+        if times > TWICE {
+            return (times / TWICE).max(FINER);
         }
+        finer.begin(lattice.size);
+        if times > 1.0 {
+            finer.find(tube);
+        }
+        dispatch!(level, simd => simd.vectorize(
+            #[inline(always)]
+            || tube.balance(),
+        ));
+        if !finer.any() {
+            return times;
+        }
+        dispatch!(level, simd => finer.sample(simd, tiles, radius, lattice));
+        times_for(finer.surround(tube, tips, lattice, radius))
     }
 
     /// Gives a sink the triangles between samples.
@@ -293,12 +312,18 @@ impl HalvingScratch {
         sink: &mut impl MeshSink,
     ) -> Result<Option<MeshQuality>> {
         let (level, levels) = (scratch.level(), options.tolerance.as_levels());
-        let Self { tube, halves, .. } = self;
+        let Self {
+            tube,
+            finer,
+            halves,
+            ..
+        } = self;
+        finer.choose(tube);
         dispatch!(level, simd => simd.vectorize(
             #[inline(always)]
-            || halves.choose(simd, tube),
+            || halves.choose(simd, tube, finer),
         ));
-        halves.collect(tube);
+        halves.collect(tube, finer);
         self.unfold(lattice);
         self.number(lattice);
         if self.vertices.len() > options.max_vertices {
@@ -306,11 +331,11 @@ impl HalvingScratch {
         }
         sink.begin(self.vertices.len(), self.corners.len())?;
         for &key in &self.vertices {
-            let (sample, sides) = lattice.of_key(key);
-            let position = lattice.place(sample) + self.folds.offset(sample, sides);
+            let (spot, sides) = lattice.of_key(key);
+            let position = lattice.place(spot) + self.folds.offset(spot, sides);
             sink.vertex(MeshVertex {
                 position: position.as_vec2().to_array(),
-                density: self.tube.at(sample),
+                density: self.finer.vertex_at(&self.tube, spot),
             });
         }
         for corners in &self.corners {
@@ -331,20 +356,20 @@ impl HalvingScratch {
             return;
         }
         for triangle in &self.halves.triangles {
-            let samples = triangle.map(|sample| lattice.of_key(sample).0);
-            let [a, b, c] = samples;
+            let spots = triangle.map(|key| lattice.of_key(key).0);
+            let [a, b, c] = spots;
             let end = [0, 1].map(|axis: usize| a[axis].max(b[axis]).max(c[axis]));
-            let sides = |sample: [usize; 2]| {
-                let through = folds.through(sample);
-                [0, 1].map(|axis: usize| through[axis] && sample[axis] < end[axis])
+            let sides = |spot: Spot| {
+                let through = folds.through(spot);
+                [0, 1].map(|axis: usize| through[axis] && spot[axis] < end[axis])
             };
-            corners.push(samples.map(|sample| lattice.key(sample, sides(sample))));
+            corners.push(spots.map(|spot| lattice.key(spot, sides(spot))));
             for [from, to] in [[a, b], [b, c], [c, a]] {
                 for axis in 0..2 {
                     // Of the triangles beside a cut, those before it.
-                    let on_cut = |at: [usize; 2]| folds.through(at)[axis] && at[axis] == end[axis];
+                    let on_cut = |at: Spot| folds.through(at)[axis] && at[axis] == end[axis];
                     if on_cut(from) && on_cut(to) {
-                        let key = |at: [usize; 2], behind: bool| {
+                        let key = |at: Spot, behind: bool| {
                             let mut sides = sides(at);
                             sides[axis] = behind;
                             lattice.key(at, sides)
@@ -357,10 +382,10 @@ impl HalvingScratch {
                 }
             }
         }
-        for sample in folds.crossings() {
-            if self.tube.at(sample) > 0.0 {
+        for spot in folds.crossings() {
+            if self.finer.vertex_at(&self.tube, spot) > 0.0 {
                 let [a, b, c, d] = [[false, false], [true, false], [true, true], [false, true]]
-                    .map(|sides| lattice.key(sample, sides));
+                    .map(|sides| lattice.key(spot, sides));
                 corners.extend([[a, b, c], [a, c, d]]);
             }
         }
@@ -369,9 +394,11 @@ impl HalvingScratch {
     /// Numbers the corners of triangles in the order in which they come.
     fn number(&mut self, lattice: &Lattice) {
         const NONE: u32 = u32::MAX;
-        let sides = if self.folds.any() { 4 } else { 1 };
+        let kinds = if self.finer.any() { KINDS } else { 1 };
+        let all = if self.folds.any() { 4 * KINDS } else { kinds };
         self.numbers.clear();
-        self.numbers.resize(sides * lattice.count(), NONE);
+        self.numbers.reserve(KINDS * lattice.count());
+        self.numbers.resize(all * lattice.count(), NONE);
         self.vertices.clear();
         for &corner in self.corners.iter().flatten() {
             let number = &mut self.numbers[corner as usize];

@@ -9,6 +9,7 @@ use core::iter::once;
 use glam::DVec2;
 
 use super::SIDE;
+use super::finer::Spot;
 use crate::outline::{Edge, bounds};
 
 /// Samples that a fold keeps from what bends density, beyond the penumbra radius: bends are seen from two away.
@@ -104,12 +105,12 @@ impl Folds {
         self.cuts.iter().any(|cuts| !cuts.is_empty())
     }
 
-    /// How far behind its place among what is left a sample is, on one side of the cuts through it.
-    pub(super) fn offset(&self, sample: [usize; 2], sides: Sides) -> DVec2 {
+    /// How far behind its place among what is left a spot is, on one side of the cuts through it.
+    pub(super) fn offset(&self, spot: Spot, sides: Sides) -> DVec2 {
         let offset = |axis: usize| {
             let mut offset = 0.0;
             for &(cut, taken) in &self.cuts[axis] {
-                if cut < sample[axis] || cut == sample[axis] && sides[axis] {
+                if 2 * cut < spot[axis] || 2 * cut == spot[axis] && sides[axis] {
                     offset = taken;
                 }
             }
@@ -118,18 +119,18 @@ impl Folds {
         DVec2::new(offset(0), offset(1))
     }
 
-    /// Across which axes a cut goes through a sample.
-    pub(super) fn through(&self, sample: [usize; 2]) -> [bool; 2] {
+    /// Across which axes a cut goes through a spot.
+    pub(super) fn through(&self, spot: Spot) -> [bool; 2] {
         [0, 1].map(|axis| {
             let mut cuts = self.cuts[axis].iter();
-            cuts.any(|&(cut, _)| cut == sample[axis])
+            cuts.any(|&(cut, _)| 2 * cut == spot[axis])
         })
     }
 
-    /// The samples where cuts cross.
-    pub(super) fn crossings(&self) -> impl Iterator<Item = [usize; 2]> {
+    /// The spots where cuts cross.
+    pub(super) fn crossings(&self) -> impl Iterator<Item = Spot> {
         let [columns, rows] = &self.cuts;
-        let column = |&(x, _): &(usize, f64)| rows.iter().map(move |&(y, _)| [x, y]);
+        let column = |&(x, _): &(usize, f64)| rows.iter().map(move |&(y, _)| [2 * x, 2 * y]);
         columns.iter().flat_map(column)
     }
 }
@@ -166,11 +167,11 @@ mod tests {
             assert!(folds.cuts.iter().all(|cuts| !cuts.is_empty()));
             let fold = |edge| folds.fold(edge, corner, pitch);
             let folded: Vec<Edge> = edges.iter().map(fold).collect();
-            for y in (0..1_000).step_by(16) {
-                for x in (0..1_000).step_by(16) {
+            for y in (0..2_000).step_by(32) {
+                for x in (0..2_000).step_by(32) {
                     for sides in [[false, false], [true, true]] {
-                        let place =
-                            corner + DVec2::new(f64::from(x as u32), f64::from(y as u32)) * pitch;
+                        let place = corner
+                            + DVec2::new(f64::from(x as u32), f64::from(y as u32)) * pitch / 2.0;
                         let whole = place + folds.offset([x, y], sides);
                         let density = at_point(folded.iter(), place, radius);
                         assert!((density - at_point(edges.iter(), whole, radius)).abs() < 1e-9);

@@ -5,6 +5,7 @@ mod many;
 use fearless_simd::Simd;
 
 use super::SIDE;
+use super::finer::{Finer, Spot, spot_key};
 use super::tube::{Plane, Right, Tube};
 
 /// Sample by sample, column and row.
@@ -25,7 +26,7 @@ pub(super) struct Halves {
     halved: Vec<bool>,
     /// Whether all samples are the same in the square whose middle one is.
     flat: Vec<bool>,
-    /// The triangles, by the samples at their corners.
+    /// The triangles, by the [spots](spot_key) at their corners.
     pub(super) triangles: Vec<[u32; 3]>,
 }
 
@@ -119,6 +120,11 @@ impl Right {
         (half > 0).then(|| (moved(self.corner, self.ways, half), halves))
     }
 
+    /// The spot in the middle of the longest side, if legs have a single sample.
+    fn center(&self) -> Spot {
+        [0, 1].map(|axis: usize| (2 * self.corner[axis]).wrapping_add_signed(self.ways[axis]))
+    }
+
     #[inline(always)]
     fn plane(&self, tube: &Tube) -> Plane {
         let ends = self.ends();
@@ -139,14 +145,14 @@ impl Halves {
     /// Chooses the sides to halve, from the smallest up: those of triangles that leave the tube, and those of which a half is
     /// halved.
     #[inline(always)]
-    pub(super) fn choose<S: Simd>(&mut self, simd: S, tube: &Tube) {
+    pub(super) fn choose<S: Simd>(&mut self, simd: S, tube: &Tube, finer: &Finer) {
         self.size = tube.size();
         let [columns, rows] = self.size;
         for marks in [&mut self.halved, &mut self.flat] {
             marks.clear();
             marks.resize(columns * rows, false);
         }
-        self.choose_smallest(tube);
+        self.choose_smallest(tube, finer);
         let mut side = 4;
         while side <= SIDE {
             let half = side / 2;
@@ -198,7 +204,7 @@ impl Halves {
     /// Chooses for sides of two samples and the diagonals of their squares, row by row: the middle is all that can be off, as
     /// the squares' sides have been looked at before.
     #[inline(always)]
-    fn choose_smallest(&mut self, tube: &Tube) {
+    fn choose_smallest(&mut self, tube: &Tube, finer: &Finer) {
         let [columns, rows] = self.size;
         for y in 0..rows {
             let halved = &mut self.halved[y * columns..][..columns];
@@ -217,6 +223,7 @@ impl Halves {
                 }
             }
         }
+        finer.mark_beside(&mut self.halved);
         for y in (1..rows).step_by(2) {
             let (above, row, below) = (tube.row(y - 1), tube.row(y), tube.row(y + 1));
             for x in (1..columns).step_by(2) {
@@ -311,36 +318,57 @@ impl Halves {
 
     /// Collects the triangles that the shadow reaches.
     #[inline(always)]
-    pub(super) fn collect(&mut self, tube: &Tube) {
+    pub(super) fn collect(&mut self, tube: &Tube, finer: &Finer) {
         self.triangles.clear();
         let [columns, rows] = self.size;
         for y in (SIDE / 2..rows).step_by(SIDE) {
             for x in (SIDE / 2..columns).step_by(SIDE) {
                 for triangle in in_square([x, y], SIDE) {
-                    self.collect_right(tube, &triangle);
+                    self.collect_right(tube, finer, &triangle);
                 }
             }
         }
     }
 
-    fn collect_right(&mut self, tube: &Tube, triangle: &Right) {
+    fn collect_right(&mut self, tube: &Tube, finer: &Finer, triangle: &Right) {
         match triangle.halves() {
             Some((middle, [first, second])) if self.is_halved(middle) => {
-                self.collect_straight(tube, &first);
-                self.collect_straight(tube, &second);
+                self.collect_straight(tube, finer, &first);
+                self.collect_straight(tube, finer, &second);
             }
+            None if finer.is_halved(triangle.center()) => self.collect_finer(finer, triangle),
             _ => self.push(tube, triangle.corners(), &[*triangle]),
         }
     }
 
-    fn collect_straight(&mut self, tube: &Tube, triangle: &Straight) {
+    fn collect_straight(&mut self, tube: &Tube, finer: &Finer, triangle: &Straight) {
         let halves = triangle.halves();
         if self.is_halved(triangle.middle) {
             for half in &halves {
-                self.collect_right(tube, half);
+                self.collect_right(tube, finer, half);
             }
         } else {
             self.push(tube, triangle.corners(), &halves);
+        }
+    }
+
+    /// Keeps the halves of a triangle with legs of one sample, and theirs.
+    fn collect_finer(&mut self, finer: &Finer, triangle: &Right) {
+        let center = triangle.center();
+        let [corner, next, last] = triangle.corners().map(|[x, y]| [2 * x, 2 * y]);
+        let between = |a: Place, b: Place| [0, 1].map(|axis: usize| a[axis].midpoint(b[axis]));
+        for [from, to] in [[corner, next], [last, corner]] {
+            let middle = between(from, to);
+            let sides = if finer.is_halved(middle) {
+                &[[from, middle], [middle, to]][..]
+            } else {
+                &[[from, to]]
+            };
+            for &[from, to] in sides {
+                let corners = [from, to, center];
+                self.triangles
+                    .push(corners.map(|spot| spot_key(spot, self.size)));
+            }
         }
     }
 

@@ -4,10 +4,14 @@ use core::f64::consts::{FRAC_2_PI, FRAC_PI_2, PI, SQRT_2};
 
 use glam::DVec2;
 
+use super::Lattice;
 use crate::outline::Edge;
 
 /// How near to the penumbra radius a radius of curvature is, over it, where there is a tip: samples tell of all others.
 const NEAR: f64 = 0.15;
+
+/// How far about a tip samples may know nothing of it, in samples.
+const TIP: f64 = 1.5;
 
 /// What an outline has to turn for one, in radians: less is a fraction of a level.
 const TURN: f64 = 0.1;
@@ -17,14 +21,24 @@ const TURN: f64 = 0.1;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Tip {
     /// The centre, in scene units.
-    pub(super) center: DVec2,
+    center: DVec2,
     /// How far the radius of curvature is from the penumbra radius, in scene units.
-    pub(super) miss: f64,
+    miss: f64,
     /// How far the outline turns, in radians.
     turn: f64,
 }
 
 impl Tip {
+    /// Where it is, in samples.
+    pub(super) fn place(&self, lattice: &Lattice) -> DVec2 {
+        (self.center - lattice.corner) / lattice.pitch
+    }
+
+    /// How far about it samples `pitch` apart may know nothing of it, in samples.
+    pub(super) fn reach(&self, pitch: f64) -> f64 {
+        self.miss / pitch + TIP
+    }
+
     /// How far density may be off between samples `pitch` apart, from what they tell of it.
     pub(super) fn height(&self, pitch: f64, radius: f64) -> f64 {
         // Over the distance from the centre density changes by as much as the part of the disc's edge that is seen from the side.

@@ -7,7 +7,7 @@ use crate::density::lanes::{LANES, NUMBERS};
 
 /// How far density may be off the chord between two samples, over the second differences there: where the penumbra ends between
 /// them it goes with the power 1.5 of the distance, and is off by 0.21 of the larger and 0.26 of their mean.
-const BETWEEN: f32 = 0.26;
+pub(super) const BETWEEN: f32 = 0.26;
 
 /// Densities so near to 0 or 1 are that: a thousandth of a level.
 const NOISE: f32 = 4e-6;
@@ -30,14 +30,14 @@ const BEHIND: usize = 2 * LANES;
 pub(super) struct Tube {
     /// Columns and rows.
     size: [usize; 2],
-    limit: f32,
-    densities: Vec<f32>,
+    pub(super) limit: f32,
+    pub(super) densities: Vec<f32>,
     /// Those in the middle between each sample, the next and the two below.
-    centers: Vec<f32>,
+    pub(super) centers: Vec<f32>,
     /// What vertices have instead, so that triangles are off both ways.
-    balanced: Vec<f32>,
-    least: Vec<f32>,
-    most: Vec<f32>,
+    pub(super) balanced: Vec<f32>,
+    pub(super) least: Vec<f32>,
+    pub(super) most: Vec<f32>,
 }
 
 /// A row of samples: what vertices have there, and between what they may be.
@@ -93,8 +93,8 @@ impl Tube {
         self.balanced[y * self.size[0] + x]
     }
 
-    /// Lays the tube about the samples, and gives how much density bends between them over what they may be apart for: above 1
-    /// the tube is closed somewhere, or the part `hidden` of some bend is larger than the limit.
+    /// Lays the tube about the samples. What limit it [takes](Self::needed) is more where it is closed, or where the part `hidden` of a
+    /// bend is larger.
     ///
     /// Between two samples density is off their chord by a [part](BETWEEN) of the second difference, up where it is negative and
     /// down where it is positive. What is known of it along rows and along columns adds up, as where two ends of penumbrae cross,
@@ -102,27 +102,21 @@ impl Tube {
     /// In the middle of diagonals, where triangles' longest sides pass samples that are farther apart than along rows, it is sampled:
     /// of 2,077 icons 5 passed the tolerance there, by up to an eighth, while samples alone told of it.
     #[inline(always)]
-    pub(super) fn surround(&mut self, limit: f32, hidden: f32) -> f32 {
+    pub(super) fn surround(&mut self, limit: f32, hidden: f32) {
         let [columns, rows] = self.size;
         let count = columns * rows;
         self.limit = limit;
         for density in self.densities.iter_mut().chain(&mut self.centers) {
-            // Sums over many edges leave some rounding where there is nothing, or all.
-            *density = if *density < NOISE { 0.0 } else { *density };
-            *density = if *density > 1.0 - NOISE {
-                1.0
-            } else {
-                *density
-            };
+            *density = clean(*density);
         }
         for (bounds, empty) in [(&mut self.least, -limit), (&mut self.most, limit)] {
             bounds.clear();
             bounds.resize(count + BEHIND, empty);
         }
         // What limit it takes at each sample.
-        let bends = &mut self.balanced;
-        bends.clear();
-        bends.resize(count + BEHIND, 0.0);
+        let needed = &mut self.balanced;
+        needed.clear();
+        needed.resize(count + BEHIND, 0.0);
         for row in 1..rows - 1 {
             let start = row * columns;
             let [above, here, below] = [start - columns, start, start + columns]
@@ -134,8 +128,8 @@ impl Tube {
             let [over, under] = [start - columns, start]
                 .map(|start| self.centers[start..start + columns - 1].windows(2));
             let samples = above.zip(here).zip(below).zip(over.zip(under));
-            let found = bounds.zip(&mut bends[inner]);
-            for ((((above, here), below), (over, under)), ((least, most), bend)) in
+            let found = bounds.zip(&mut needed[inner]);
+            for ((((above, here), below), (over, under)), ((least, most), needed)) in
                 samples.zip(found)
             {
                 // How far the chords along diagonals are above density.
@@ -153,9 +147,7 @@ impl Tube {
                 let across = above[1] + below[1] - twice;
                 let down = above[0] + below[2] - twice;
                 let up = above[2] + below[0] - twice;
-                let saddle = larger(smaller(larger(down, up), -smaller(down, up)), 0.0);
-                let low = smaller(along, 0.0) + smaller(across, 0.0) - saddle;
-                let high = larger(along, 0.0) + larger(across, 0.0) + saddle;
+                let [low, high] = bends(along, across, down, up);
                 let seen = hidden * BETWEEN * larger(high, -low);
                 let low = smaller(BETWEEN * low, lowest);
                 let high = larger(BETWEEN * high, highest);
@@ -163,18 +155,25 @@ impl Tube {
                 *most = here[1] - high + limit;
                 // What vertices may have is from 0 to 1.
                 let outer = larger(high - here[1], here[1] - 1.0 - low);
-                *bend = larger(larger(outer, seen), 0.5 * (high - low));
+                *needed = larger(larger(outer, seen), 0.5 * (high - low));
             }
         }
+    }
+
+    /// How much the limit that it takes is over the limit: above 1 samples are too far apart.
+    pub(super) fn worst(&self) -> f32 {
         let mut worst = [0.0; RUN];
-        for bends in bends.as_chunks::<RUN>().0 {
-            for (worst, bend) in worst.iter_mut().zip(bends) {
-                *worst = larger(*worst, *bend);
+        for needed in self.needed().as_chunks::<RUN>().0 {
+            for (worst, needed) in worst.iter_mut().zip(needed) {
+                *worst = larger(*worst, *needed);
             }
         }
-        let bend = worst.into_iter().fold(0.0, larger);
-        self.balance();
-        bend / limit
+        worst.into_iter().fold(0.0, larger) / self.limit
+    }
+
+    /// What limit it takes at each sample, as long as vertices are not balanced.
+    pub(super) fn needed(&self) -> &[f32] {
+        &self.balanced
     }
 
     /// Narrows the tube about a place (in samples) to what is left if density may be off by so much between them.
@@ -189,14 +188,15 @@ impl Tube {
                 let at = y * columns + x;
                 self.least[at] = self.least[at].max(self.densities[at] + by - self.limit);
                 self.most[at] = self.most[at].min(self.densities[at] - by + self.limit);
-                self.balanced[at] = self.balanced[at].max(self.least[at]).min(self.most[at]);
+                let needed = self.limit - 0.5 * (self.most[at] - self.least[at]);
+                self.balanced[at] = self.balanced[at].max(needed);
             }
         }
     }
 
     /// Moves vertices to the side to which density bends, by as much as the triangles' middles would be off to the other.
     #[inline(always)]
-    fn balance(&mut self) {
+    pub(super) fn balance(&mut self) {
         let [columns, rows] = self.size;
         self.balanced.clear();
         self.balanced.extend_from_slice(&self.densities);
@@ -223,16 +223,6 @@ impl Tube {
                 *balanced = smaller(larger(density, *least), *most);
             }
         }
-    }
-
-    /// Whether what vertices have is within it.
-    pub(super) fn is_open(&self) -> bool {
-        let mut open = true;
-        let bounds = self.least.iter().zip(&self.most);
-        for (balanced, (least, most)) in self.balanced.iter().zip(bounds) {
-            open &= (least <= balanced) & (balanced <= most);
-        }
-        open
     }
 
     /// How far a density is outside of the tube at a sample; less than 0 where it is within.
@@ -314,6 +304,25 @@ impl Tube {
         }
         worst.into_iter().fold(f32::NEG_INFINITY, larger)
     }
+}
+
+/// A density without the rounding that sums over many edges leave where there is nothing, or all.
+#[inline(always)]
+pub(super) fn clean(density: f32) -> f32 {
+    let density = if density < NOISE { 0.0 } else { density };
+    if density > 1.0 - NOISE { 1.0 } else { density }
+}
+
+/// How much density bends down and up about a sample, by second differences along a row, across rows and along both diagonals.
+///
+/// What is known of rows and columns adds up, as where two ends of penumbrae cross, and what is known of both diagonals, if one bends up
+/// and the other down: rows and columns show nothing of that.
+#[inline(always)]
+pub(super) fn bends(along: f32, across: f32, down: f32, up: f32) -> [f32; 2] {
+    let saddle = larger(smaller(larger(down, up), -smaller(down, up)), 0.0);
+    let low = smaller(along, 0.0) + smaller(across, 0.0) - saddle;
+    let high = larger(along, 0.0) + larger(across, 0.0) + saddle;
+    [low, high]
 }
 
 /// The larger of two numbers: without a rule for what is none, which would take as long again.
