@@ -327,8 +327,8 @@ fn mesh(c: &mut Criterion) {
         let shadow = shadow(&shape, 10.0);
         for levels in [1.0, 4.0] {
             let tolerance = Tolerance::levels(levels).unwrap();
-            let few = MeshOptions::new(tolerance);
-            for (way, options) in [("few", few), ("quick", few.quick())] {
+            let options = MeshOptions::new(tolerance);
+            for (way, options) in [("few", options.few()), ("quick", options.quick())] {
                 group.bench_function(BenchmarkId::new(format!("{name}/{way}"), levels), |b| {
                     b.iter(|| black_box(&shadow).mesh(options));
                 });

@@ -63,7 +63,16 @@ pub struct MeshOptions {
     tolerance: Tolerance,
     profile: Profile,
     max_vertices: usize,
-    quick: bool,
+    effort: Effort,
+}
+
+/// How long making a mesh may take, for how few triangles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Effort {
+    /// Halving for outlines of small detail, refinement for all others.
+    Usual,
+    Quick,
+    Few,
 }
 
 impl MeshOptions {
@@ -74,7 +83,7 @@ impl MeshOptions {
             tolerance,
             profile: Profile::Disc,
             max_vertices: 1 << 16,
-            quick: false,
+            effort: Effort::Usual,
         }
     }
 
@@ -93,8 +102,8 @@ impl MeshOptions {
     }
 
     /// With a mesh that is made as soon as may be, of up to ten times the triangles: for shadows that change in every frame,
-    /// such as a card's that rises. Otherwise time is only saved where it costs few triangles, as it does for icons under a wide
-    /// penumbra.
+    /// such as a card's that rises. Otherwise time is only saved where a mesh of [few](Self::few) triangles
+    /// would take more than a hundred times as long, as it does for icons under a wide penumbra, for a sixth to a quarter of them.
     ///
     /// ```
     /// use penumbral::{FillRule, Light, MeshOptions, Path, Shape, Tolerance};
@@ -104,15 +113,28 @@ impl MeshOptions {
     /// let flag = Shape::path(&path, FillRule::NonZero)?;
     /// let shadow = Light::android(400.0)?.cast(&flag, 16.0, 0.0)?;
     /// let options = MeshOptions::new(Tolerance::ONE_LEVEL);
-    /// let [few, soon] = [options, options.quick()].map(|options| shadow.mesh(options));
+    /// let [few, soon] = [options.few(), options.quick()].map(|options| shadow.mesh(options));
     /// assert!(few.indices().len() < soon.indices().len());
     /// assert!(soon.error_levels() <= 1.0);
     /// # Ok::<(), penumbral::Error>(())
     /// ```
     #[must_use]
     pub fn quick(mut self) -> Self {
-        self.quick = true;
+        self.effort = Effort::Quick;
         self
+    }
+
+    /// With a mesh of as few triangles as are found, however small the outline's detail: for shadows that are made once and kept. One takes
+    /// from tens of milliseconds to some seconds.
+    #[must_use]
+    pub fn few(mut self) -> Self {
+        self.effort = Effort::Few;
+        self
+    }
+
+    /// Whether time counts more than triangles, whatever the outline.
+    fn is_quick(&self) -> bool {
+        self.effort == Effort::Quick
     }
 }
 
@@ -186,6 +208,15 @@ impl ShadowMesh {
         }
     }
 
+    fn filled(buffers: MeshBuffers<u32>, quality: MeshQuality) -> Self {
+        Self {
+            vertices: buffers.vertices,
+            indices: buffers.indices,
+            error_levels: quality.error_levels,
+            complete: quality.complete,
+        }
+    }
+
     fn empty() -> Self {
         Self {
             vertices: Vec::new(),
@@ -229,13 +260,8 @@ impl Shadow {
     fn mesh_with(&self, options: &MeshOptions, scratch: &mut Scratch) -> ShadowMesh {
         let mut buffers = MeshBuffers::new();
         match self.patterned(options, scratch, &mut buffers) {
-            Ok(Some(quality)) => ShadowMesh {
-                vertices: buffers.vertices,
-                indices: buffers.indices,
-                error_levels: quality.error_levels,
-                complete: quality.complete,
-            },
-            _ => self.refined(options),
+            Ok(Some(quality)) => ShadowMesh::filled(buffers, quality),
+            _ => self.triangulated(options),
         }
     }
 
@@ -260,7 +286,7 @@ impl Shadow {
         }
         let mesh = scratch
             .meshes
-            .same(self, &options, || self.refined(&options));
+            .same(self, &options, || self.triangulated(&options));
         sink.begin(mesh.vertices.len(), mesh.indices.len() / 3)?;
         for &vertex in &mesh.vertices {
             sink.vertex(vertex);
@@ -281,14 +307,30 @@ impl Shadow {
         scratch: &mut Scratch,
         sink: &mut impl MeshSink,
     ) -> Result<Option<MeshQuality>> {
-        if options.quick
-            && let Some(quality) = halving::mesh(self, options, scratch, sink)?
-        {
-            return Ok(Some(quality));
+        let first = match options.effort {
+            Effort::Few => return Ok(None),
+            Effort::Quick => halving::mesh(self, options, scratch, sink)?,
+            Effort::Usual => self.strips(options, scratch, sink)?,
+        };
+        match (first, options.effort) {
+            (None, Effort::Quick) => self.strips(options, scratch, sink),
+            (None, _) => halving::mesh(self, options, scratch, sink),
+            (found, _) => Ok(found),
         }
-        match self.strips(options, scratch, sink)? {
-            None if !options.quick => halving::mesh(self, options, scratch, sink),
-            found => Ok(found),
+    }
+
+    /// The mesh by triangulation; in strips where few triangles are asked for and these have fewer.
+    fn triangulated(&self, options: &MeshOptions) -> ShadowMesh {
+        let refined = self.refined(options);
+        if options.effort != Effort::Few {
+            return refined;
+        }
+        let mut strips = MeshBuffers::new();
+        let quality = self.strips(options, &mut Scratch::new(), &mut strips);
+        let fewer = strips.indices.len() <= refined.indices.len();
+        match quality {
+            Ok(Some(quality)) if fewer || !refined.complete => ShadowMesh::filled(strips, quality),
+            _ => refined,
         }
     }
 

@@ -22,9 +22,9 @@ const GOLDEN: [(&str, u64); 11] = [
     ("points", 0xed85_f785_6936_3e8b),
     ("dithered paint", 0xa426_0f57_f04f_7121),
     ("masks", 0x9fa6_92f9_d4c9_4c87),
-    ("meshes", 0xf130_38c0_6894_fc03),
+    ("meshes", 0x11ed_48c5_de32_6538),
     ("pictures", 0x849b_bce3_4025_ce19),
-    ("svg", 0x47dc_6abc_7653_8a8c),
+    ("svg", 0x7d94_6a46_4d58_3c20),
 ];
 
 /// FNV-1a of 64 bits (Fowler, Noll & Vo 1991).

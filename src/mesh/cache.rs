@@ -252,7 +252,7 @@ fn write_key(shadow: &Shadow, options: &MeshOptions, origin: DVec2, step: f64, k
         options.tolerance.as_levels().to_bits(),
         options.profile as u64,
         options.max_vertices as u64,
-        u64::from(options.quick),
+        options.effort as u64,
         step.to_bits(),
     ]);
     // Whole numbers as `f64`, of which none is too large. Zero has one sign.

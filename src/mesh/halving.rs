@@ -166,7 +166,7 @@ pub(super) fn mesh(
     sink: &mut impl MeshSink,
 ) -> Result<Option<MeshQuality>> {
     let soft = options.profile == Profile::Disc && shadow.radius() > 0.0;
-    if !soft || !(options.quick || is_detailed(shadow)) {
+    if !soft || !(options.is_quick() || is_detailed(shadow)) {
         return Ok(None);
     }
     let levels = options.tolerance.as_levels();

@@ -16,8 +16,8 @@ use super::measure::{Assessment, Measure};
 use super::profile::Profile;
 use super::regions::{Face, Region, Triangles, Vertex, faces};
 use super::settle::settle;
-use super::thin::{Corner, Thinning, Triangle};
-use super::{MeshOptions, MeshVertex, Ring, ShadowMesh};
+use super::thin::{Corner, TRIED, Thinning, Triangle};
+use super::{Effort, MeshOptions, MeshVertex, Ring, ShadowMesh};
 
 /// Rounds of refinement at most. Each halves the larger triangles: the finest tolerance takes about 12; but the last vertices between a
 /// comb's teeth came one a round, and 40 were too few.
@@ -288,8 +288,11 @@ impl Refinement {
         let mut mesh = ShadowMesh::empty();
         let (corners, triangles) = self.all(limit);
         let mut thinning = Thinning::new(&mut self.measure, limit, rounding, corners, triangles);
-        if !self.broken && !self.options.quick {
-            thinning.run();
+        if !self.broken && !self.options.is_quick() {
+            match self.options.effort {
+                Effort::Few => thinning.run_long(),
+                Effort::Usual | Effort::Quick => thinning.run(TRIED),
+            }
         }
         // In `f32` vertices of small penumbrae may come to lie on one another: they become one, and triangles between them
         // nothing.

@@ -4,14 +4,16 @@
 //! gets the density in the middle of all that are within it. The triangles outside and in the umbra are there too, so that nothing
 //! comes to lie on anything else: the penumbra's two edges lose vertices only, and what a chord cuts off is measured as well.
 
+mod relax;
+
 use glam::DVec2;
 
 use super::measure::{Assessment, Measure};
 use super::regions::Region;
 
-/// How many of a vertex's sides are tried, the shortest first: with all of them a twentieth fewer triangles are left, for half as much
-/// time again.
-const TRIED: usize = 3;
+/// How many of a vertex's sides are tried, the shortest first, unless triangles count most: with all of them a twentieth fewer are left,
+/// for half as much time again.
+pub(super) const TRIED: usize = 3;
 
 /// The part of the limit that few samples may reach for more of them to be looked at.
 const PROMISING: f64 = 0.95;
@@ -21,6 +23,13 @@ const CUT: f64 = 0.15;
 
 /// The least height of a triangle, over the penumbra radius.
 const FLATTEST: f64 = 1e-3;
+
+/// From which length on triangles are needles, in penumbra radii: they take as long to measure as they are.
+const NEEDLE: f64 = 16.0;
+
+/// How many times that length of needles is measured for each triangle there is at first. Along a comb all teeth may be joined by needles
+/// with its far ends, and to try them all takes the square of their number.
+const PATIENCE: f64 = 12.0;
 
 /// The triangle that is not there any more.
 const GONE: [usize; 3] = [usize::MAX; 3];
@@ -83,6 +92,8 @@ pub(super) struct Thinning<'a> {
     measure: &'a mut Measure,
     limit: f64,
     flattest: f64,
+    /// How much of needles may still be measured, in lengths from which on they are.
+    patience: f64,
     pub(super) corners: Vec<Corner>,
     triangles: Vec<Triangle>,
     /// How wrong it is where the penumbra's edges were cut off.
@@ -105,10 +116,12 @@ impl<'a> Thinning<'a> {
             }
         }
         let flattest = (FLATTEST * measure.radius()).max(8.0 * rounding);
+        let patience = PATIENCE * triangles.len() as f64;
         Self {
             measure,
             limit,
             flattest,
+            patience,
             corners,
             triangles,
             cut: 0.0,
@@ -120,11 +133,12 @@ impl<'a> Thinning<'a> {
         self.triangles.iter().filter(|t| t.corners != GONE)
     }
 
-    pub(super) fn run(&mut self) {
+    /// Takes away what it can, trying so many of a vertex's sides.
+    pub(super) fn run(&mut self, tried: usize) {
         loop {
             let mut changed = false;
             for vertex in 0..self.corners.len() {
-                changed |= self.shrink_one(vertex);
+                changed |= self.shrink_one(vertex, tried);
             }
             if !changed {
                 break;
@@ -133,7 +147,7 @@ impl<'a> Thinning<'a> {
     }
 
     /// Shrinks one of a vertex's sides if it can be, the shortest first.
-    fn shrink_one(&mut self, vertex: usize) -> bool {
+    fn shrink_one(&mut self, vertex: usize, tried: usize) -> bool {
         if !core::mem::replace(&mut self.corners[vertex].fresh, false) {
             return false;
         }
@@ -148,7 +162,7 @@ impl<'a> Thinning<'a> {
         others.sort_by(|&a, &b| length(a).total_cmp(&length(b)).then(a.cmp(&b)));
         others
             .into_iter()
-            .take(TRIED)
+            .take(tried)
             .any(|other| self.shrink(vertex, place, other))
     }
 
@@ -213,6 +227,9 @@ impl<'a> Thinning<'a> {
         {
             return false;
         }
+        if !self.bears(vertex) || !self.bears(other) {
+            return false;
+        }
         let mut sides = self.star_without(vertex, other);
         let [from, to] = [vertex, other].map(|v| self.corners[v].at);
         let is_free = place == Place::Inside && self.place(other) == Place::Inside;
@@ -231,6 +248,18 @@ impl<'a> Thinning<'a> {
         let Some(fit) = found else { return false };
         self.put(vertex, other, &sides, fit);
         true
+    }
+
+    /// Whether there is patience to measure the triangles about a vertex once more, and takes of it what they are for.
+    fn bears(&mut self, vertex: usize) -> bool {
+        let at = self.corners[vertex].at;
+        let length = |(_, [next, _]): Opposite| (self.corners[next].at - at).length();
+        let longest = self.star(vertex).map(length).fold(0.0, f64::max);
+        let needles = longest / (NEEDLE * self.measure.radius());
+        if needles > 1.0 {
+            self.patience -= needles;
+        }
+        needles <= 1.0 || self.patience > 0.0
     }
 
     /// What a vertex at a place may be as a corner of triangles with these sides opposite of it.

@@ -62,6 +62,10 @@ fn shapes() -> Vec<(&'static str, Shape, [f32; 2])> {
     ]
 }
 
+fn few(tolerance: f32) -> MeshOptions {
+    MeshOptions::new(levels(tolerance)).few()
+}
+
 fn cast(shape: &Shape, radius: f32) -> Shadow {
     let light = Light::directional([0.0, 0.0], radius).unwrap();
     light.cast(shape, 1.0, 0.0).unwrap()
@@ -159,7 +163,7 @@ fn error_of(search: &Search<'_>, field: &Field, shadow: &Shadow) -> f64 {
 fn fewest(shadow: &Shadow, tolerance: f32, rounds: usize) -> usize {
     let field = Field::new(shadow);
     let limit = SAMPLED * f64::from(tolerance) / 255.0;
-    let few = MeshOptions::new(levels(FINER * tolerance));
+    let few = few(FINER * tolerance);
     let mut starts = vec![
         begin_with_mesh(&field, limit, shadow, few),
         begin_with_mesh(&field, limit, shadow, few.quick()),
@@ -185,8 +189,16 @@ fn fewest(shadow: &Shadow, tolerance: f32, rounds: usize) -> usize {
 }
 
 /// The fewest triangles that searches have found so far within one level.
-const FOUND: [(&str, f32, usize); 3] =
-    [("triangle", 1.2, 328), ("L", 0.8, 646), ("star", 1.0, 997)];
+const FOUND: [(&str, f32, usize); 8] = [
+    ("triangle", 1.2, 328),
+    ("L", 0.8, 646),
+    ("star", 1.0, 997),
+    ("heart", 1.2, 871),
+    ("heart", 5.0, 293),
+    ("circle", 3.6, 270),
+    ("ring", 0.6, 2062),
+    ("ring", 2.5, 668),
+];
 
 /// How many times as many meshes may have.
 const TIMES: f64 = 1.5;
@@ -196,7 +208,13 @@ fn meshes_have_at_most_so_many_times_the_fewest_triangles() {
     let shapes = shapes();
     for (name, radius, found) in FOUND {
         let (_, shape, _) = shapes.iter().find(|(other, ..)| *other == name).unwrap();
-        let mesh = cast(shape, radius).mesh(levels(1.0));
+        let shadow = cast(shape, radius);
+        let mesh = shadow.mesh(few(1.0));
+        sanity_check(&mesh);
+        assert!(
+            dense_error(&shadow, &mesh, 6) <= 1.0,
+            "{name} at r {radius}"
+        );
         let times = mesh.triangles().count() as f64 / found as f64;
         println!("{name} at r {radius}: {times:.2} times the {found} found");
         assert!(times <= TIMES, "{name}: {times}");
@@ -219,7 +237,7 @@ fn a_search_finds_meshes_of_fewer_triangles() {
             let shadow = cast(&shape, radius);
             for tolerance in [4.0_f32, 1.0] {
                 let start = Instant::now();
-                let ours = shadow.mesh(levels(tolerance)).triangles().count();
+                let ours = shadow.mesh(few(tolerance)).triangles().count();
                 let best = fewest(&shadow, tolerance, rounds);
                 println!(
                     "{name} at r {radius} within {tolerance}: {ours} triangles, {best} found in {:.0} s, {:.2} times as many",

@@ -76,6 +76,9 @@ enum Command {
         /// Make them as soon as may be, of more triangles.
         #[arg(long)]
         quick: bool,
+        /// Make them of as few triangles as are found, however long that takes.
+        #[arg(long, conflicts_with = "quick")]
+        few: bool,
     },
     /// Tell of each surface's shadow on the ground how it is projected and drawn.
     Explain {
@@ -151,9 +154,14 @@ fn main() -> ExitCode {
             output,
             tolerance,
             quick,
+            few,
         } => {
             let options = MeshOptions::new(tolerance);
-            let options = if quick { options.quick() } else { options };
+            let options = match (quick, few) {
+                (true, _) => options.quick(),
+                (_, true) => options.few(),
+                _ => options,
+            };
             mesh::run(&scene, &output, options)
         }
         Command::Explain { scene } => explain::run(&scene),

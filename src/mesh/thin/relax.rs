@@ -1,0 +1,90 @@
+//! Fewer triangles still, for longer: between rounds of thinning vertices move to where the triangles about them are less wrong, so that
+//! more sides can go.
+
+use glam::DVec2;
+
+use super::{Fit, Opposite, Place, Thinning};
+
+/// Rounds at most, and the part of the triangles that each has to take away for another.
+const ROUNDS: usize = 12;
+const WORTHWHILE: f64 = 0.02;
+
+/// How far vertices are tried to be moved, over their shortest side.
+const STEPS: [f64; 2] = [0.3, 0.1];
+
+/// Ways to move.
+const WAYS: [[f64; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
+
+/// The power of their errors that triangles are to lower: the worst count most, and so do many.
+const POWER: i32 = 4;
+
+impl Thinning<'_> {
+    /// Takes away what it can as long as moving vertices leads on.
+    pub(in crate::mesh) fn run_long(&mut self) {
+        self.run(usize::MAX);
+        for _ in 0..ROUNDS {
+            let before = self.triangles().count() as f64;
+            for vertex in 0..self.corners.len() {
+                if self.place(vertex) == Place::Inside {
+                    self.relax(vertex);
+                }
+            }
+            for corner in &mut self.corners {
+                corner.fresh = true;
+            }
+            self.run(usize::MAX);
+            if self.triangles().count() as f64 > (1.0 - WORTHWHILE) * before {
+                break;
+            }
+        }
+    }
+
+    /// Moves a vertex to where the triangles about it are less wrong.
+    fn relax(&mut self, vertex: usize) {
+        let sides: Vec<Opposite> = self.star(vertex).collect();
+        let mut best = self.energy(&sides);
+        let at = self.corners[vertex].at;
+        let length = |&(_, [other, _]): &Opposite| (self.corners[other].at - at).length();
+        let shortest = sides.iter().map(length).fold(f64::INFINITY, f64::min);
+        let mut found = self.try_at(at, &sides, &mut best);
+        for step in STEPS {
+            for way in WAYS {
+                let to = at + DVec2::from(way) * (step * shortest);
+                found = self.try_at(to, &sides, &mut best).or(found);
+            }
+        }
+        if let Some(fit) = found {
+            self.move_to(vertex, &sides, fit);
+        }
+    }
+
+    /// What the triangles opposite of sides are wrong by.
+    fn energy(&self, sides: &[Opposite]) -> f64 {
+        let error = |&(index, _): &Opposite| (self.triangles[index].error / self.limit).powi(POWER);
+        sides.iter().map(error).sum()
+    }
+
+    /// What a vertex may be at a place, if that is better than the best so far.
+    fn try_at(&mut self, at: DVec2, sides: &[Opposite], best: &mut f64) -> Option<Fit> {
+        let fit = self.fit(at, None, sides)?;
+        let errors = fit.assessments.iter().flatten();
+        let energy = errors
+            .map(|found| (found.error / self.limit).powi(POWER))
+            .sum();
+        (energy < *best).then(|| {
+            *best = energy;
+            fit
+        })
+    }
+
+    fn move_to(&mut self, vertex: usize, sides: &[Opposite], fit: Fit) {
+        for (&(index, _), assessment) in sides.iter().zip(fit.assessments) {
+            if let Some(found) = assessment {
+                let triangle = &mut self.triangles[index];
+                (triangle.error, triangle.exact_error) = (found.error, found.exact_error);
+            }
+        }
+        let corner = &mut self.corners[vertex];
+        (corner.at, corner.density) = (fit.at, fit.density);
+    }
+}
