@@ -307,15 +307,16 @@ impl Shadow {
         scratch: &mut Scratch,
         sink: &mut impl MeshSink,
     ) -> Result<Option<MeshQuality>> {
-        let first = match options.effort {
-            Effort::Few => return Ok(None),
-            Effort::Quick => halving::mesh(self, options, scratch, sink)?,
-            Effort::Usual => self.strips(options, scratch, sink)?,
-        };
-        match (first, options.effort) {
-            (None, Effort::Quick) => self.strips(options, scratch, sink),
-            (None, _) => halving::mesh(self, options, scratch, sink),
-            (found, _) => Ok(found),
+        match options.effort {
+            Effort::Few => Ok(None),
+            Effort::Quick => match halving::mesh(self, options, scratch, sink)? {
+                None => self.strips(options, scratch, sink),
+                found => Ok(found),
+            },
+            Effort::Usual => match self.strips(options, scratch, sink)? {
+                None => halving::mesh(self, options, scratch, sink),
+                found => Ok(found),
+            },
         }
     }
 

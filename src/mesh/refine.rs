@@ -288,11 +288,11 @@ impl Refinement {
         let mut mesh = ShadowMesh::empty();
         let (corners, triangles) = self.all(limit);
         let mut thinning = Thinning::new(&mut self.measure, limit, rounding, corners, triangles);
-        if !self.broken && !self.options.is_quick() {
-            match self.options.effort {
-                Effort::Few => thinning.run_long(),
-                Effort::Usual | Effort::Quick => thinning.run(TRIED),
-            }
+        match self.options.effort {
+            _ if self.broken => {}
+            Effort::Quick => {}
+            Effort::Usual => thinning.run(TRIED),
+            Effort::Few => thinning.run_long(),
         }
         // In `f32` vertices of small penumbrae may come to lie on one another: they become one, and triangles between them
         // nothing.

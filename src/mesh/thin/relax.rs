@@ -15,9 +15,6 @@ const STEPS: [f64; 2] = [0.3, 0.1];
 /// Ways to move.
 const WAYS: [[f64; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
 
-/// The power of their errors that triangles are to lower: the worst count most, and so do many.
-const POWER: i32 = 4;
-
 impl Thinning<'_> {
     /// Takes away what it can as long as moving vertices leads on.
     pub(in crate::mesh) fn run_long(&mut self) {
@@ -25,7 +22,7 @@ impl Thinning<'_> {
         for _ in 0..ROUNDS {
             let before = self.triangles().count() as f64;
             for vertex in 0..self.corners.len() {
-                if self.place(vertex) == Place::Inside {
+                if self.place(vertex) == Place::Inside && self.bears(vertex) {
                     self.relax(vertex);
                 }
             }
@@ -42,7 +39,7 @@ impl Thinning<'_> {
     /// Moves a vertex to where the triangles about it are less wrong.
     fn relax(&mut self, vertex: usize) {
         let sides: Vec<Opposite> = self.star(vertex).collect();
-        let mut best = self.energy(&sides);
+        let mut best = self.energy(sides.iter().map(|&(index, _)| self.triangles[index].error));
         let at = self.corners[vertex].at;
         let length = |&(_, [other, _]): &Opposite| (self.corners[other].at - at).length();
         let shortest = sides.iter().map(length).fold(f64::INFINITY, f64::min);
@@ -58,19 +55,16 @@ impl Thinning<'_> {
         }
     }
 
-    /// What the triangles opposite of sides are wrong by.
-    fn energy(&self, sides: &[Opposite]) -> f64 {
-        let error = |&(index, _): &Opposite| (self.triangles[index].error / self.limit).powi(POWER);
-        sides.iter().map(error).sum()
+    /// What triangles are wrong by, which is to be lowered: the worst count most.
+    fn energy(&self, errors: impl Iterator<Item = f64>) -> f64 {
+        let share = |error: f64| error * error / (self.limit * self.limit);
+        errors.map(|error| share(error) * share(error)).sum()
     }
 
     /// What a vertex may be at a place, if that is better than the best so far.
     fn try_at(&mut self, at: DVec2, sides: &[Opposite], best: &mut f64) -> Option<Fit> {
         let fit = self.fit(at, None, sides)?;
-        let errors = fit.assessments.iter().flatten();
-        let energy = errors
-            .map(|found| (found.error / self.limit).powi(POWER))
-            .sum();
+        let energy = self.energy(fit.assessments.iter().flatten().map(|found| found.error));
         (energy < *best).then(|| {
             *best = energy;
             fit
