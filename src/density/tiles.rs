@@ -441,7 +441,7 @@ mod tests {
         ]
     }
 
-    /// The largest difference from the closed form in double precision at a lattice's samples, in levels.
+    /// The largest difference from the closed form in double precision at a lattice's samples and beside them, in levels.
     fn error(shape: &Shape, radius: f64, pitch: f64) -> f64 {
         let outline = Outline::of_simple(shape).unwrap();
         let edges: Vec<Edge> = outline.edges().copied().collect();
@@ -449,7 +449,8 @@ mod tests {
         let corner = min - (radius + 2.0 * pitch);
         let size = (max + (radius + 2.0 * pitch) - corner) / (pitch * SIDE as f64);
         let [columns, rows] = [size.x, size.y].map(|count| count.ceil() as usize * SIDE + 1);
-        let mut densities = vec![f32::NAN; columns * rows];
+        let offsets = [[0.0; 2], [0.5, 0.25], [0.75, 0.0]];
+        let mut drawn = offsets.map(|_| vec![f32::NAN; columns * rows]);
         let lattice = Lattice {
             corner,
             pitch,
@@ -458,20 +459,24 @@ mod tests {
         let mut tiles = Tiles::default();
         tiles.load(&edges, radius, &lattice);
         dispatch!(Level::new(), simd => {
-            tiles.fill(simd, radius, &lattice, [[0.0; 2]], None, [&mut densities]);
+            let densities = drawn.each_mut().map(Vec::as_mut_slice);
+            tiles.fill(simd, radius, &lattice, offsets, None, densities);
         });
         let lines = edges.iter().all(|edge| matches!(edge, Edge::Line(_)));
         let mut worst: f64 = 0.0;
-        for (i, &density) in densities.iter().enumerate() {
-            let sample = DVec2::new((i % columns) as f64, (i / columns) as f64);
-            let exact = at_point(edges.iter(), corner + sample * pitch, radius);
-            worst = worst.max((f64::from(density) - exact).abs() * 255.0);
-            // Where there is nothing, or all, rounding leaves next to nothing.
-            if lines && (exact == 0.0 || exact == 1.0) {
-                assert!(
-                    (f64::from(density) - exact).abs() < 2e-6,
-                    "{density}, {exact}"
-                );
+        for (offset, densities) in offsets.into_iter().zip(drawn) {
+            for (i, density) in densities.into_iter().enumerate() {
+                let sample = DVec2::new((i % columns) as f64, (i / columns) as f64);
+                let place = corner + (sample + DVec2::from(offset)) * pitch;
+                let exact = at_point(edges.iter(), place, radius);
+                worst = worst.max((f64::from(density) - exact).abs() * 255.0);
+                // Where there is nothing, or all, rounding leaves next to nothing.
+                if lines && (exact == 0.0 || exact == 1.0) {
+                    assert!(
+                        (f64::from(density) - exact).abs() < 2e-6,
+                        "{density}, {exact}"
+                    );
+                }
             }
         }
         worst
