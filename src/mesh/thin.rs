@@ -21,6 +21,9 @@ const PROMISING: f64 = 0.95;
 /// The part of the limit that may be cut off along the penumbra's edges: about what their rings' own chords leave out.
 const CUT: f64 = 0.15;
 
+/// The same where triangles count most.
+const LARGE_CUT: f64 = 0.3;
+
 /// The least height of a triangle, over the penumbra radius.
 const FLATTEST: f64 = 1e-3;
 
@@ -92,6 +95,7 @@ pub(super) struct Thinning<'a> {
     measure: &'a mut Measure,
     limit: f64,
     flattest: f64,
+    most_cut: f64,
     /// How much of needles may still be measured, in lengths from which on they are.
     patience: f64,
     pub(super) corners: Vec<Corner>,
@@ -121,6 +125,7 @@ impl<'a> Thinning<'a> {
             measure,
             limit,
             flattest,
+            most_cut: CUT * limit,
             patience,
             corners,
             triangles,
@@ -326,12 +331,11 @@ impl<'a> Thinning<'a> {
         if (next - before).perp_dot(at - before) >= 0.0 {
             return Some(fit);
         }
-        let limit = CUT * self.limit;
         let corners = [before, at, next];
         let found = self
             .measure
-            .assess(corners, [density; 3], [false; 3], true, limit);
-        (found.most <= limit).then_some(Fit {
+            .assess(corners, [density; 3], [false; 3], true, self.most_cut);
+        (found.most <= self.most_cut).then_some(Fit {
             cut: found.exact_error,
             ..fit
         })

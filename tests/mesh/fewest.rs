@@ -189,13 +189,14 @@ fn fewest(shadow: &Shadow, tolerance: f32, rounds: usize) -> usize {
 }
 
 /// The fewest triangles that searches have found so far within one level.
-const FOUND: [(&str, f32, usize); 8] = [
+const FOUND: [(&str, f32, usize); 9] = [
     ("triangle", 1.2, 328),
     ("L", 0.8, 646),
     ("star", 1.0, 997),
     ("heart", 1.2, 871),
     ("heart", 5.0, 293),
     ("circle", 3.6, 270),
+    ("circle", 8.0, 84),
     ("ring", 0.6, 2062),
     ("ring", 2.5, 668),
 ];

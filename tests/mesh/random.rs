@@ -44,7 +44,12 @@ fn random_outlines(range: Range<u32>) {
         let hard = Light::directional([0.0, 0.0], 0.02).unwrap();
         let hard = mass(&hard.cast(&shape, 1.0, 0.0).unwrap().mesh(levels(4.0)));
         let options = MeshOptions::new(levels(tolerance));
-        for (way, options) in [("few", options), ("quick", options.quick())] {
+        let ways = [
+            ("usual", options),
+            ("quick", options.quick()),
+            ("few", options.few()),
+        ];
+        for (way, options) in ways {
             let name = format!("{name}, {way}");
             let mesh = shadow.mesh(options);
             sanity_check(&mesh);

@@ -3,7 +3,7 @@
 
 use glam::DVec2;
 
-use super::{Fit, Opposite, Place, Thinning};
+use super::{Fit, LARGE_CUT, Opposite, Place, Thinning};
 
 /// Rounds at most, and the part of the triangles that each has to take away for another.
 const ROUNDS: usize = 12;
@@ -18,6 +18,7 @@ const WAYS: [[f64; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
 impl Thinning<'_> {
     /// Takes away what it can as long as moving vertices leads on.
     pub(in crate::mesh) fn run_long(&mut self) {
+        self.most_cut = LARGE_CUT * self.limit;
         self.run(usize::MAX);
         for _ in 0..ROUNDS {
             let before = self.triangles().count() as f64;
