@@ -21,8 +21,10 @@ const PROMISING: f64 = 0.95;
 /// The part of the limit that may be cut off along the penumbra's edges: about what their rings' own chords leave out.
 const CUT: f64 = 0.15;
 
-/// The same where triangles count most.
-const LARGE_CUT: f64 = 0.3;
+/// The same where triangles count most, and the part of the penumbra's mass that all that is cut off may have, as far as that is not more
+/// than the limit.
+const LARGE_CUT: f64 = 0.6;
+const LOST: f64 = 0.1;
 
 /// The least height of a triangle, over the penumbra radius.
 const FLATTEST: f64 = 1e-3;
@@ -87,8 +89,9 @@ struct Fit {
     at: DVec2,
     density: f64,
     assessments: Vec<Option<Assessment>>,
-    /// The exact density of what is cut off at most.
+    /// The exact density of what is cut off at most, and its mass.
     cut: f64,
+    lost: f64,
 }
 
 pub(super) struct Thinning<'a> {
@@ -96,6 +99,8 @@ pub(super) struct Thinning<'a> {
     limit: f64,
     flattest: f64,
     most_cut: f64,
+    /// How much of the shadow's mass may still be cut off.
+    spare: f64,
     /// How much of needles may still be measured, in lengths from which on they are.
     patience: f64,
     pub(super) corners: Vec<Corner>,
@@ -126,6 +131,7 @@ impl<'a> Thinning<'a> {
             limit,
             flattest,
             most_cut: CUT * limit,
+            spare: f64::INFINITY,
             patience,
             corners,
             triangles,
@@ -321,6 +327,7 @@ impl<'a> Thinning<'a> {
             density,
             assessments,
             cut: 0.0,
+            lost: 0.0,
         })
     }
 
@@ -335,8 +342,11 @@ impl<'a> Thinning<'a> {
         let found = self
             .measure
             .assess(corners, [density; 3], [false; 3], true, self.most_cut);
-        (found.most <= self.most_cut).then_some(Fit {
+        let area = 0.5 * (at - before).perp_dot(next - before);
+        let lost = area * found.exact_error;
+        (found.most <= self.most_cut && lost <= self.spare).then_some(Fit {
             cut: found.exact_error,
+            lost,
             ..fit
         })
     }
@@ -344,6 +354,7 @@ impl<'a> Thinning<'a> {
     /// Leaves a vertex out, and `other` as fitted.
     fn put(&mut self, vertex: usize, other: usize, sides: &[Opposite], fit: Fit) {
         self.cut = self.cut.max(fit.cut);
+        self.spare -= fit.lost;
         let between: Vec<usize> = self
             .star(vertex)
             .filter(|(_, side)| side.contains(&other))

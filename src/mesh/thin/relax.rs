@@ -3,7 +3,8 @@
 
 use glam::DVec2;
 
-use super::{Fit, LARGE_CUT, Opposite, Place, Thinning};
+use super::{Fit, LARGE_CUT, LOST, Opposite, Place, Thinning};
+use crate::mesh::regions::Region;
 
 /// Rounds at most, and the part of the triangles that each has to take away for another.
 const ROUNDS: usize = 12;
@@ -19,6 +20,11 @@ impl Thinning<'_> {
     /// Takes away what it can as long as moving vertices leads on.
     pub(in crate::mesh) fn run_long(&mut self) {
         self.most_cut = LARGE_CUT * self.limit;
+        self.spare = LOST
+            * self
+                .shares()
+                .map(|[area, mass]| mass.min(self.limit * area))
+                .sum::<f64>();
         self.run(usize::MAX);
         for _ in 0..ROUNDS {
             let before = self.triangles().count() as f64;
@@ -35,6 +41,16 @@ impl Thinning<'_> {
                 break;
             }
         }
+    }
+
+    /// The area and mass of each triangle in the penumbra.
+    fn shares(&self) -> impl Iterator<Item = [f64; 2]> {
+        let penumbra = self.triangles().filter(|t| t.region == Region::Penumbra);
+        penumbra.map(|triangle| {
+            let [a, b, c] = triangle.corners.map(|corner| &self.corners[corner]);
+            let area = 0.5 * (b.at - a.at).perp_dot(c.at - a.at);
+            [area, area * (a.density + b.density + c.density) / 3.0]
+        })
     }
 
     /// Moves a vertex to where the triangles about it are less wrong.
