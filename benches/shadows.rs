@@ -10,7 +10,7 @@
 //! | `area` | a card of so many pixels' side at r = 8 | side |
 //! | `radius` | concave paths and a card on their way from narrow to wide penumbrae | shape / r |
 //! | `cards` | 100 cards on 1920 x 1080: projecting them, blending all, blending what opaque cards leave to be seen | part |
-//! | `mesh` | a shadow's triangles, few or quick, at a tolerance in levels | shape / few or quick / levels |
+//! | `mesh` | a shadow's triangles, as usual, few or quick, at a tolerance in levels | shape / usual, few or quick / levels |
 //! | `raster` | the densities of triangles on pixels | shape |
 //! | `mesh-into` | the same into buffers of the caller's, again (warm), for a shadow not seen before (new), for other sizes of known corners (size) and other radii of them (rise) | shape / way / levels |
 //! | `render` | whole pictures of scenes | scene |
@@ -328,7 +328,11 @@ fn mesh(c: &mut Criterion) {
         for levels in [1.0, 4.0] {
             let tolerance = Tolerance::levels(levels).unwrap();
             let options = MeshOptions::new(tolerance);
-            for (way, options) in [("few", options.few()), ("quick", options.quick())] {
+            for (way, options) in [
+                ("usual", options),
+                ("few", options.few()),
+                ("quick", options.quick()),
+            ] {
                 group.bench_function(BenchmarkId::new(format!("{name}/{way}"), levels), |b| {
                     b.iter(|| black_box(&shadow).mesh(options));
                 });

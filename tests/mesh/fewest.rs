@@ -204,6 +204,9 @@ const FOUND: [(&str, f32, usize); 9] = [
 /// How many times as many meshes may have.
 const TIMES: f64 = 1.5;
 
+/// So many of these first, which are left to refinement, keep that without being asked for few.
+const USUAL: usize = 3;
+
 #[test]
 fn meshes_have_at_most_so_many_times_the_fewest_triangles() {
     let shapes = shapes();
@@ -218,6 +221,13 @@ fn meshes_have_at_most_so_many_times_the_fewest_triangles() {
         );
         let times = mesh.triangles().count() as f64 / found as f64;
         println!("{name} at r {radius}: {times:.2} times the {found} found");
+        assert!(times <= TIMES, "{name}: {times}");
+    }
+    for (name, radius, found) in &FOUND[..USUAL] {
+        let (_, shape, _) = shapes.iter().find(|(other, ..)| other == name).unwrap();
+        let mesh = cast(shape, *radius).mesh(levels(1.0));
+        let times = mesh.triangles().count() as f64 / *found as f64;
+        println!("{name} at r {radius}, as usual: {times:.2} times");
         assert!(times <= TIMES, "{name}: {times}");
     }
 }

@@ -82,9 +82,9 @@ fn every_fixture_keeps_every_tolerance() {
 
 /// Checks a shadow's two meshes; their largest error, in levels, and the number of triangles where these are to be few.
 fn keeps(name: &str, shadow: &Shadow, tolerance: f32) -> (f64, usize) {
-    let few = MeshOptions::new(levels(tolerance));
-    let (error, _) = keeps_with(&format!("{name}, quick"), shadow, few.quick(), tolerance);
-    let (worst, count) = keeps_with(name, shadow, few, tolerance);
+    let usual = MeshOptions::new(levels(tolerance));
+    let (error, _) = keeps_with(&format!("{name}, quick"), shadow, usual.quick(), tolerance);
+    let (worst, count) = keeps_with(name, shadow, usual, tolerance);
     (worst.max(error), count)
 }
 
