@@ -20,7 +20,7 @@ use crate::outline::Edge;
 pub(crate) const SIDE: usize = 4;
 
 /// Places to a sample, at most: memory is taken for so many.
-const PLACES: usize = 6;
+pub(crate) const PLACES: usize = 6;
 
 /// From a tile's middle to its outer samples, in samples.
 const REACH: f64 = (SIDE as f64 - 1.0) / 2.0;
@@ -82,7 +82,7 @@ pub(crate) struct Tiles {
 }
 
 /// Where densities are taken: so many places to each sample.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug)]
 struct Places<const N: usize> {
     /// From each sample to its places, in radii.
     offsets: [DVec2; N],

@@ -70,6 +70,15 @@ pub(super) struct Triangle {
     pub(super) exact_error: f64,
 }
 
+impl Triangle {
+    /// Keeps what was measured, if anything was.
+    fn note(&mut self, assessment: Option<Assessment>) {
+        if let Some(found) = assessment {
+            (self.error, self.exact_error) = (found.error, found.exact_error);
+        }
+    }
+}
+
 /// A triangle about a vertex, with its side opposite of it.
 type Opposite = (usize, [usize; 2]);
 
@@ -366,11 +375,8 @@ impl<'a> Thinning<'a> {
             }
         }
         for (&(index, [a, b]), assessment) in sides.iter().zip(fit.assessments) {
-            let triangle = &mut self.triangles[index];
-            triangle.corners = [other, a, b];
-            if let Some(found) = assessment {
-                (triangle.error, triangle.exact_error) = (found.error, found.exact_error);
-            }
+            self.triangles[index].corners = [other, a, b];
+            self.triangles[index].note(assessment);
             for corner in [a, b] {
                 self.corners[corner].fresh = true;
             }

@@ -8,7 +8,7 @@ use fearless_simd::Simd;
 use super::Lattice;
 use super::tips::Tip;
 use super::tube::{BETWEEN, Tube, bends, clean};
-use crate::density::tiles::{SIDE, Tiles};
+use crate::density::tiles::{PLACES, SIDE, Tiles};
 
 /// In half samples, column and row. The parities are a spot's kind: a sample, or between two along a row or a column, or in
 /// the middle of four.
@@ -21,7 +21,7 @@ const UPRIGHT: usize = 2;
 const CENTER: usize = 3;
 
 /// From a sample to where densities are taken: between two along both axes, and in the middles of a quarter's diagonals.
-const OFFSETS: [[f64; 2]; 6] = [
+const OFFSETS: [[f64; 2]; PLACES] = [
     [0.5, 0.0],
     [0.0, 0.5],
     [0.25, 0.25],
@@ -42,7 +42,7 @@ pub(super) struct Finer {
     fine: Vec<bool>,
     /// Whether densities are known in it: in those about them too.
     known: Vec<bool>,
-    densities: [Vec<f32>; OFFSETS.len()],
+    densities: [Vec<f32>; PLACES],
     /// The least and the most that a mesh may have, by the kind of spot.
     bounds: [Vec<[f32; 2]>; KINDS],
     /// Whether the side is halved whose middle a spot is, by its kind.
@@ -113,14 +113,10 @@ impl Finer {
         }
         let densities = self.densities.each_mut().map(Vec::as_mut_slice);
         tiles.fill(simd, radius, lattice, OFFSETS, Some(&self.known), densities);
-        for tile in 0..self.known.len() {
-            if self.known[tile] {
-                for [x, y] in samples_of(tile, self.size) {
-                    for densities in &mut self.densities {
-                        let density = &mut densities[y * self.size[0] + x];
-                        *density = clean(*density);
-                    }
-                }
+        for [x, y] in samples_in(&self.known, self.size) {
+            for densities in &mut self.densities {
+                let density = &mut densities[y * self.size[0] + x];
+                *density = clean(*density);
             }
         }
     }
@@ -173,65 +169,42 @@ impl Finer {
         lattice: &Lattice,
         radius: f64,
     ) -> f32 {
-        let (columns, limit) = (self.size[0], tube.limit);
+        let columns = self.size[0];
         for bounds in &mut self.bounds {
             bounds.resize(columns * self.size[1], [0.0; 2]);
-        }
-        for tile in (0..self.fine.len()).filter(|&tile| self.fine[tile]) {
-            for [x, y] in samples_of(tile, self.size) {
-                for bounds in &mut self.bounds {
-                    bounds[y * columns + x] = [0.0; 2];
-                }
+            for [x, y] in samples_in(&self.fine, self.size) {
+                bounds[y * columns + x] = [0.0; 2];
             }
         }
         self.add_tips(tips, lattice, radius);
         let mut worst: f32 = 0.0;
-        for tile in (0..self.fine.len()).filter(|&tile| self.fine[tile]) {
-            for [x, y] in samples_of(tile, self.size) {
-                let sample = y * columns + x;
-                for kind in 0..KINDS {
-                    let spot = [2 * x + kind % 2, 2 * y + kind / 2];
-                    let here = self.at(tube, spot);
-                    let [low, high] = self.off(tube, spot);
-                    let [hidden, _] = self.bounds[kind][sample];
-                    let (low, high) = (low.min(-hidden), high.max(hidden));
-                    worst = worst.max(high).max(-low);
-                    self.bounds[kind][sample] = [here - low - limit, here - high + limit];
-                    let narrowed: &[[usize; 2]] = match kind {
-                        LEVEL => &[[0, 1]],
-                        UPRIGHT => &[[0, columns]],
-                        CENTER => &[[0, columns + 1], [1, columns]],
-                        _ => &[],
-                    };
-                    for ends in narrowed {
-                        let ends = ends.map(|end| sample + end);
-                        let chord = 0.5 * (tube.densities[ends[0]] + tube.densities[ends[1]]);
-                        for end in ends {
-                            let density = tube.densities[end] - (chord - here);
-                            tube.least[end] = tube.least[end].max(density - low - limit);
-                            tube.most[end] = tube.most[end].min(density - high + limit);
-                        }
-                    }
+        for [x, y] in samples_in(&self.fine, self.size) {
+            for kind in 0..KINDS {
+                let spot = [2 * x + kind % 2, 2 * y + kind / 2];
+                let (here, sample) = (self.at(tube, spot), y * columns + x);
+                let [low, high] = self.off(tube, spot);
+                let [hidden, _] = self.bounds[kind][sample];
+                let (low, high) = (low.min(-hidden), high.max(hidden));
+                worst = worst.max(high).max(-low);
+                self.bounds[kind][sample] = [here - low - tube.limit, here - high + tube.limit];
+                let chords: &[[usize; 2]] = match kind {
+                    LEVEL => &[[0, 1]],
+                    UPRIGHT => &[[0, columns]],
+                    CENTER => &[[0, columns + 1], [1, columns]],
+                    _ => &[],
+                };
+                for ends in chords {
+                    tube.narrow_chord(ends.map(|end| sample + end), here, [low, high]);
                 }
             }
         }
-        for tile in (0..self.known.len()).filter(|&tile| self.known[tile]) {
-            for [x, y] in samples_of(tile, self.size) {
-                let sample = y * columns + x;
-                let (least, most) = (tube.least[sample], tube.most[sample]);
-                let balanced = &mut tube.balanced[sample];
-                let within = balanced.max(least).min(most);
-                // Where nothing is within, all triangles about it are smaller than the tube is for.
-                *balanced = if least <= most && (0.0..=1.0).contains(&within) {
-                    within
-                } else {
-                    tube.densities[sample]
-                };
-                if self.fine[tile] {
-                    let [least, most] = self.bounds[0][sample];
-                    *balanced = balanced.max(least).min(most);
-                }
-            }
+        for [x, y] in samples_in(&self.known, self.size) {
+            tube.settle(y * columns + x);
+        }
+        for [x, y] in samples_in(&self.fine, self.size) {
+            let sample = y * columns + x;
+            let ([least, most], balanced) = (self.bounds[0][sample], &mut tube.balanced[sample]);
+            *balanced = balanced.max(least).min(most);
         }
         worst / tube.limit
     }
@@ -277,52 +250,35 @@ impl Finer {
             let middle = 0.5 * (tube.balanced[ends[0]] + tube.balanced[ends[1]]);
             middle < least || middle > most
         };
-        for tile in (0..fine.len()).filter(|&tile| fine[tile]) {
-            for [x, y] in samples_of(tile, [columns, rows]) {
-                let sample = y * columns + x;
-                halved[LEVEL][sample] = is_off(LEVEL, sample, [sample, sample + 1]);
-                halved[UPRIGHT][sample] = is_off(UPRIGHT, sample, [sample, sample + columns]);
-            }
+        for [x, y] in samples_in(fine, [columns, rows]) {
+            let sample = y * columns + x;
+            halved[LEVEL][sample] = is_off(LEVEL, sample, [sample, sample + 1]);
+            halved[UPRIGHT][sample] = is_off(UPRIGHT, sample, [sample, sample + columns]);
+            let ends = diagonals([x, y], columns)[0];
+            halved[CENTER][sample] = is_off(CENTER, sample, ends);
         }
-        for tile in (0..known.len()).filter(|&tile| known[tile]) {
-            for [x, y] in samples_of(tile, [columns, rows]) {
-                let sample = y * columns + x;
-                let corners = [sample, sample + 1, sample + columns, sample + columns + 1];
-                let ends = if (x + y).is_multiple_of(2) {
-                    [corners[0], corners[3]]
-                } else {
-                    [corners[1], corners[2]]
-                };
-                let is_closed = |&sample: &usize| {
-                    let balanced = tube.balanced[sample];
-                    balanced < tube.least[sample] || balanced > tube.most[sample]
-                };
-                halved[CENTER][sample] = halved[LEVEL][sample]
-                    || halved[LEVEL][sample + columns]
-                    || halved[UPRIGHT][sample]
-                    || halved[UPRIGHT][sample + 1]
-                    || corners.iter().any(is_closed)
-                    || fine[tile] && is_off(CENTER, sample, ends);
-            }
+        for [x, y] in samples_in(known, [columns, rows]) {
+            let sample = y * columns + x;
+            let is_closed = |&sample: &usize| {
+                let balanced = tube.balanced[sample];
+                balanced < tube.least[sample] || balanced > tube.most[sample]
+            };
+            halved[CENTER][sample] |= halved[LEVEL][sample]
+                || halved[LEVEL][sample + columns]
+                || halved[UPRIGHT][sample]
+                || halved[UPRIGHT][sample + 1]
+                || diagonals([x, y], columns).iter().flatten().any(is_closed);
         }
     }
 
     /// Marks the sides of two samples that are halved because squares of one sample beside them are.
     pub(super) fn mark_beside(&self, halved: &mut [bool]) {
         let columns = self.size[0];
-        for tile in (0..self.known.len()).filter(|&tile| self.known[tile]) {
-            for [x, y] in samples_of(tile, self.size) {
-                let sample = y * columns + x;
-                if self.halved[CENTER][sample] {
-                    // A square's right angles, from where its diagonal does not run.
-                    let middles = if (x + y).is_multiple_of(2) {
-                        [sample + 1, sample + columns]
-                    } else {
-                        [sample, sample + columns + 1]
-                    };
-                    for middle in middles {
-                        halved[middle] = true;
-                    }
+        for [x, y] in samples_in(&self.known, self.size) {
+            if self.halved[CENTER][y * columns + x] {
+                // A square's right angles.
+                for middle in diagonals([x, y], columns)[1] {
+                    halved[middle] = true;
                 }
             }
         }
@@ -361,12 +317,30 @@ fn mark_about(marks: &mut [bool], [columns, rows]: [usize; 2], [x, y]: [usize; 2
     }
 }
 
-/// The samples of a tile, without those at the lattice's own sides, where nothing bends.
-fn samples_of(tile: usize, [columns, rows]: [usize; 2]) -> impl Iterator<Item = [usize; 2]> {
-    let first = [tile % (columns / SIDE), tile / (columns / SIDE)].map(|at| at * SIDE);
-    let range =
-        move |axis: usize, count: usize| first[axis].max(1)..(first[axis] + SIDE).min(count - 1);
-    range(1, rows).flat_map(move |y| range(0, columns).map(move |x| [x, y]))
+/// The ends of the diagonal along which a square of one sample is halved, and of its other one. The first sample is the square's.
+fn diagonals([x, y]: [usize; 2], columns: usize) -> [[usize; 2]; 2] {
+    let sample = y * columns + x;
+    let (falling, rising) = (
+        [sample, sample + columns + 1],
+        [sample + 1, sample + columns],
+    );
+    if (x + y).is_multiple_of(2) {
+        [falling, rising]
+    } else {
+        [rising, falling]
+    }
+}
+
+/// The samples of the tiles that are marked, without those at the lattice's own sides, where nothing bends.
+fn samples_in(marks: &[bool], [columns, rows]: [usize; 2]) -> impl Iterator<Item = [usize; 2]> {
+    let tiles = (0..marks.len()).filter(|&tile| marks[tile]);
+    tiles.flat_map(move |tile| {
+        let first = [tile % (columns / SIDE), tile / (columns / SIDE)].map(|at| at * SIDE);
+        let range = move |axis: usize, count: usize| {
+            first[axis].max(1)..(first[axis] + SIDE).min(count - 1)
+        };
+        range(1, rows).flat_map(move |y| range(0, columns).map(move |x| [x, y]))
+    })
 }
 
 fn moved(spot: Spot, way: [isize; 2]) -> Spot {

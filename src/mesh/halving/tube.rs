@@ -194,6 +194,30 @@ impl Tube {
         }
     }
 
+    /// Narrows the tube at two samples by the density in the middle between them, about which it may be so far off down and up.
+    #[inline(always)]
+    pub(super) fn narrow_chord(&mut self, ends: [usize; 2], middle: f32, [low, high]: [f32; 2]) {
+        let chord = 0.5 * (self.densities[ends[0]] + self.densities[ends[1]]);
+        for end in ends {
+            let density = self.densities[end] - (chord - middle);
+            self.least[end] = self.least[end].max(density - low - self.limit);
+            self.most[end] = self.most[end].min(density - high + self.limit);
+        }
+    }
+
+    /// Moves a vertex into the tube once that is narrowed; to the density itself where there is none in it: all triangles about it are
+    /// smaller then than the tube is for.
+    #[inline(always)]
+    pub(super) fn settle(&mut self, sample: usize) {
+        let (least, most) = (self.least[sample], self.most[sample]);
+        let within = self.balanced[sample].max(least).min(most);
+        self.balanced[sample] = if least <= most && (0.0..=1.0).contains(&within) {
+            within
+        } else {
+            self.densities[sample]
+        };
+    }
+
     /// Moves vertices to the side to which density bends, by as much as the triangles' middles would be off to the other.
     #[inline(always)]
     pub(super) fn balance(&mut self) {

@@ -90,10 +90,7 @@ impl Thinning<'_> {
 
     fn move_to(&mut self, vertex: usize, sides: &[Opposite], fit: Fit) {
         for (&(index, _), assessment) in sides.iter().zip(fit.assessments) {
-            if let Some(found) = assessment {
-                let triangle = &mut self.triangles[index];
-                (triangle.error, triangle.exact_error) = (found.error, found.exact_error);
-            }
+            self.triangles[index].note(assessment);
         }
         let corner = &mut self.corners[vertex];
         (corner.at, corner.density) = (fit.at, fit.density);
