@@ -131,11 +131,6 @@ impl MeshOptions {
         self.effort = Effort::Few;
         self
     }
-
-    /// Whether time counts more than triangles, whatever the outline.
-    fn is_quick(&self) -> bool {
-        self.effort == Effort::Quick
-    }
 }
 
 impl From<Tolerance> for MeshOptions {
