@@ -6,7 +6,9 @@
 #[expect(dead_code, reason = "other tests take more of it")]
 mod common;
 
-use common::{Case, Random, Summary, bits, by, case, densities, setting, shapes, worst_of};
+use common::{
+    Case, Random, Summary, bits, by, case, densities, setting, shapes, snapped, worst_of,
+};
 use penumbral::plan::{self, Method, Target};
 use penumbral::{
     Color, Error, Grid, Hidden, Light, Paint, PixelOptions, Scratch, Shadow, Shape, Tolerance,
@@ -20,10 +22,20 @@ const AVERAGED: f32 = 0.8;
 ///     PENUMBRAL_SEED=40000 PENUMBRAL_CASES=4000 cargo test --release --all-features --test pixels every_method -- --nocapture
 #[test]
 fn every_method_keeps_its_tolerance() {
+    all_keep_their_tolerance(case, 1000);
+}
+
+/// The same where coincidences abound: casters, pixels and the penumbra radius on whole and half pixels.
+#[test]
+fn every_method_keeps_its_tolerance_on_half_pixels() {
+    all_keep_their_tolerance(snapped, 2000);
+}
+
+fn all_keep_their_tolerance(case: fn(usize) -> Case, count: usize) {
     let (mut scratch, mut summary) = (Scratch::new(), Summary::default());
     let (seed, count) = (
         setting("PENUMBRAL_SEED", 0),
-        setting("PENUMBRAL_CASES", 1000),
+        setting("PENUMBRAL_CASES", count),
     );
     println!("{count} cases from seed {seed} on");
     for index in seed..seed + count {
@@ -160,6 +172,34 @@ fn discs_on_their_own_circle_keep_their_digits() {
             0.06,
             &label,
         );
+    }
+    summary.finish();
+}
+
+/// Where a disc touches a corner's circle at the disc's top, rounding decides on which side of it they cross.
+#[test]
+fn discs_that_touch_a_corner_at_their_top_keep_the_tolerance() {
+    let (mut scratch, mut summary) = (Scratch::new(), Summary::default());
+    let grid = Grid::new([0.0, 0.0], [100, 100], 1.0).unwrap();
+    let halves = |from: u8, to: u8| (from..=to).map(|half| 0.5 * f32::from(half));
+    for radius in halves(6, 15) {
+        let light = Light::directional([0.0, 0.0], radius).unwrap();
+        for corner in [2.0, 3.5, 6.5, 7.5, 9.0, 12.5, 20.0] {
+            for (x, y) in [(22.0, 21.5), (22.5, 21.5), (22.0, 22.0), (22.5, 22.0)] {
+                for [w, h] in [[40.0, 50.0], [60.0, 41.0]] {
+                    let card = Shape::rounded_rect(x, y, w, h, corner).unwrap();
+                    let shadow = light.cast(&card, 1.0, 0.0).unwrap();
+                    let mut draw =
+                        |method| densities(&shadow, &grid, &by(Some(method)), &mut scratch);
+                    let exact = draw(Method::Exact);
+                    for method in [Method::Direct, Method::NinePatch] {
+                        let error = worst_of(&draw(method), &exact);
+                        let label = format!("r {radius}, corner {corner}, {w} x {h} at {x}, {y}");
+                        summary.add(method.to_string(), error, 1.0, &label);
+                    }
+                }
+            }
+        }
     }
     summary.finish();
 }

@@ -16,8 +16,8 @@ use tiny_skia::Pixmap;
 const GOLDEN: [(&str, u64); 11] = [
     ("exact", 0xf8b0_4e1a_d8ba_d546),
     ("auto", 0x931d_f339_7a61_65c7),
-    ("direct", 0xddf3_3b99_5384_ce14),
-    ("grid", 0xad0f_c2b1_9058_a9fc),
+    ("direct", 0x8e25_72e4_7dcf_c887),
+    ("grid", 0x0bfb_332d_156e_499f),
     ("nine-patch", 0xe469_ae1e_c083_325b),
     ("points", 0xed85_f785_6936_3e8b),
     ("dithered paint", 0xa426_0f57_f04f_7121),

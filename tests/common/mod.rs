@@ -12,7 +12,9 @@ use std::collections::BTreeMap;
 
 use drawn::Drawn;
 use penumbral::plan::Method;
-use penumbral::{FillRule, Grid, Light, Path, PixelOptions, Scratch, Shadow, Shape};
+use penumbral::{
+    FillRule, Grid, Light, LineCap, LineJoin, Path, PixelOptions, Scratch, Shadow, Shape, Stroke,
+};
 
 /// `SplitMix64` (Steele, Lea & Flood 2014): the same cases on every machine.
 pub struct Random(u64);
@@ -381,6 +383,111 @@ pub fn case(index: usize) -> Case {
     let light = Light::directional(offset, radius / per_unit).unwrap();
     let shadow = light.cast_all(&shapes, 1.0, 0.0).unwrap();
     let grid = Grid::new([0.0, 0.0], [side as u32, side as u32], per_unit).unwrap();
+    Case {
+        name,
+        shapes,
+        radius,
+        light,
+        shadow,
+        grid,
+    }
+}
+
+/// Casters drawn on whole and half pixels, under a penumbra radius of as many: discs touch corners and vertices, and pixels' middles lie
+/// on lines between them.
+pub fn snapped(index: usize) -> Case {
+    const SIDE: f32 = 72.0;
+    let mut random = Random::new(!(index as u64));
+    let random = &mut random;
+    let halves = |random: &mut Random, least: usize, most: usize| {
+        (least + random.below(most - least + 1)) as f32 / 2.0
+    };
+    let point = |random: &mut Random| [halves(random, 16, 128), halves(random, 16, 128)];
+    let corner = |random: &mut Random| halves(random, 0, 40);
+    let card = |random: &mut Random, most: usize| {
+        let [w, h] = [halves(random, 2, most), halves(random, 2, most)];
+        let [x, y] = [w, h].map(|size| halves(random, 8, 8 + (112 - (2.0 * size) as usize)));
+        let radii = if random.chance(0.5) {
+            [corner(random); 4]
+        } else {
+            [0; 4].map(|_| corner(random))
+        };
+        Shape::rounded_rect(x, y, w, h, radii).unwrap()
+    };
+    let (name, shapes) = match random.below(7) {
+        0 => ("snapped card", vec![card(random, 104)]),
+        1 => (
+            "snapped cards",
+            (0..2 + random.below(4)).map(|_| card(random, 40)).collect(),
+        ),
+        2 => {
+            let circle = |random: &mut Random| Shape::circle(point(random), halves(random, 1, 40));
+            let circles = (0..1 + random.below(3)).map(|_| circle(random).unwrap());
+            ("snapped circles", circles.collect())
+        }
+        3 => {
+            let center = point(random);
+            let mut path = Path::new();
+            for radius in [halves(random, 20, 60), halves(random, 1, 19)] {
+                let [left, right] = [center[0] - radius, center[0] + radius];
+                let radii = [radius; 2];
+                path.move_to([left, center[1]])
+                    .arc_to(radii, 0.0, false, true, [right, center[1]])
+                    .arc_to(radii, 0.0, false, true, [left, center[1]])
+                    .close();
+            }
+            (
+                "snapped ring",
+                vec![Shape::path(&path, FillRule::EvenOdd).unwrap()],
+            )
+        }
+        4 => {
+            let ring: Vec<_> = (0..3 + random.below(6)).map(|_| point(random)).collect();
+            let rule = random.pick(&[FillRule::EvenOdd, FillRule::NonZero]);
+            (
+                "snapped polygon",
+                Vec::from_iter(Shape::polygon(&[ring], rule)),
+            )
+        }
+        5 => {
+            let mut path = Path::new();
+            path.move_to(point(random));
+            for _ in 0..2 + random.below(5) {
+                match random.below(4) {
+                    0 => path.line_to(point(random)),
+                    1 => path.quad_to(point(random), point(random)),
+                    2 => path.cubic_to(point(random), point(random), point(random)),
+                    _ => {
+                        let radii = [halves(random, 1, 40); 2];
+                        let [large, sweep] = [random.chance(0.5), random.chance(0.5)];
+                        path.arc_to(radii, 0.0, large, sweep, point(random))
+                    }
+                };
+            }
+            path.close();
+            let rule = random.pick(&[FillRule::EvenOdd, FillRule::NonZero]);
+            ("snapped path", Vec::from_iter(Shape::path(&path, rule)))
+        }
+        _ => {
+            let mut path = Path::new();
+            path.move_to(point(random));
+            for _ in 0..1 + random.below(4) {
+                path.line_to(point(random));
+            }
+            let stroke = Stroke::new(halves(random, 1, 24)).unwrap();
+            let stroke = stroke
+                .with_cap(random.pick(&[LineCap::Butt, LineCap::Round, LineCap::Square]))
+                .with_join(random.pick(&[LineJoin::Miter, LineJoin::Round, LineJoin::Bevel]));
+            (
+                "snapped stroke",
+                Vec::from_iter(Shape::stroke(&path, &stroke)),
+            )
+        }
+    };
+    let radius = halves(random, 6, 24) * random.pick(&[1.0, 1.0, 1.0, 0.25, 2.0]);
+    let light = Light::directional([0.0, 0.0], radius).unwrap();
+    let shadow = light.cast_all(&shapes, 1.0, 0.0).unwrap();
+    let grid = Grid::new([0.0, 0.0], [SIDE as u32; 2], 1.0).unwrap();
     Case {
         name,
         shapes,

@@ -6,6 +6,9 @@
 )]
 
 mod checks;
+#[expect(dead_code, reason = "other tests take more of it")]
+#[path = "../common/mod.rs"]
+mod common;
 mod corners;
 mod fewest;
 mod growth;

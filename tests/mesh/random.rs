@@ -7,6 +7,7 @@ use core::ops::Range;
 use penumbral::{FillRule, Light, MeshOptions, Path, Shadow, Shape};
 
 use crate::checks::*;
+use crate::common::snapped;
 
 /// The penumbra radius of all of them.
 const RADIUS: f32 = 10.0;
@@ -21,11 +22,15 @@ fn random_outlines_keep_their_tolerance() {
 #[test]
 #[ignore = "minutes"]
 fn a_thousand_random_outlines_keep_their_tolerance() {
-    let range = std::env::var("PENUMBRAL_OUTLINES").map_or(0..1_000, |range| {
+    random_outlines(range_or(0..1_000));
+}
+
+/// The outlines that `PENUMBRAL_OUTLINES` names.
+fn range_or(all: Range<u32>) -> Range<u32> {
+    std::env::var("PENUMBRAL_OUTLINES").map_or(all, |range| {
         let (first, end) = range.split_once("..").unwrap();
         first.parse().unwrap()..end.parse().unwrap()
-    });
-    random_outlines(range);
+    })
 }
 
 fn random_outlines(range: Range<u32>) {
@@ -37,40 +42,71 @@ fn random_outlines(range: Range<u32>) {
             continue;
         }
         let name = format!("{name}, number {index}");
-        let shadow = cast(&shape);
         let place = (index as usize + index as usize / 8) % TOLERANCES.len();
-        let tolerance = TOLERANCES[place];
-        // A nearly hard shadow has the outline's area as its mass, and so has every other.
-        let hard = Light::directional([0.0, 0.0], 0.02).unwrap();
-        let hard = mass(&hard.cast(&shape, 1.0, 0.0).unwrap().mesh(levels(4.0)));
-        let options = MeshOptions::new(levels(tolerance));
-        let ways = [
-            ("usual", options),
-            ("quick", options.quick()),
-            ("few", options.few()),
-        ];
-        for (way, options) in ways {
-            let name = format!("{name}, {way}");
-            let mesh = shadow.mesh(options);
-            sanity_check(&mesh);
-            assert!(
-                mesh.is_complete() && mesh.error_levels() <= f64::from(tolerance),
-                "{name} within {tolerance}: {}",
-                mesh.error_levels()
-            );
-            let error = dense_error(&shadow, &mesh, 8);
-            assert!(
-                error <= f64::from(tolerance),
-                "{name} within {tolerance}: {error}, said to be {}",
-                mesh.error_levels()
-            );
-            worst[place] = worst[place].max(error / f64::from(tolerance));
-            let slack = f64::from(tolerance) / 255.0 * area(&mesh) + 1e-3 * hard;
-            let missing = mass(&mesh) - hard;
-            assert!(missing.abs() <= slack, "{name}: mass off by {missing}");
-        }
+        let shadow = cast(&shape);
+        let error = error_of(&name, &[shape], &shadow, TOLERANCES[place]);
+        worst[place] = worst[place].max(error);
     }
     println!("Random outlines {range:?}: at most {worst:.3?} of {TOLERANCES:?} levels");
+}
+
+#[test]
+fn snapped_outlines_keep_their_tolerance() {
+    snapped_outlines(0..4);
+}
+
+/// By `cargo test --release --all-features --test mesh hundred_snapped -- --ignored --nocapture`; `PENUMBRAL_OUTLINES` as above.
+#[test]
+#[ignore = "minutes"]
+fn two_hundred_snapped_outlines_keep_their_tolerance() {
+    snapped_outlines(range_or(0..200));
+}
+
+fn snapped_outlines(range: Range<u32>) {
+    let mut worst = 0.0_f64;
+    for index in range.clone() {
+        let case = snapped(index as usize);
+        if case.shadow.bounds().is_some() {
+            let tolerance = TOLERANCES[index as usize % TOLERANCES.len()];
+            let name = case.label(index as usize);
+            worst = worst.max(error_of(&name, &case.shapes, &case.shadow, tolerance));
+        }
+    }
+    println!("Snapped outlines {range:?}: at most {worst:.3} of the tolerance");
+}
+
+/// The largest error over the tolerance of the three kinds of meshes, whose promises are asserted.
+fn error_of(name: &str, shapes: &[Shape], shadow: &Shadow, tolerance: f32) -> f64 {
+    // A nearly hard shadow has the outline's area as its mass, and so has every other.
+    let hard = Light::directional([0.0, 0.0], 0.02).unwrap();
+    let hard = mass(&hard.cast_all(shapes, 1.0, 0.0).unwrap().mesh(levels(4.0)));
+    let options = MeshOptions::new(levels(tolerance));
+    let tolerance = f64::from(tolerance);
+    let ways = [
+        ("usual", options),
+        ("quick", options.quick()),
+        ("few", options.few()),
+    ];
+    let errors = ways.map(|(way, options)| {
+        let name = format!("{name}, {way}");
+        let mesh = shadow.mesh(options);
+        sanity_check(&mesh);
+        let said = mesh.error_levels();
+        assert!(
+            mesh.is_complete() && said <= tolerance,
+            "{name} within {tolerance}: {said}"
+        );
+        let error = dense_error(shadow, &mesh, 8);
+        assert!(
+            error <= tolerance,
+            "{name} within {tolerance}: {error}, said to be {said}"
+        );
+        let slack = tolerance / 255.0 * area(&mesh) + 1e-3 * hard;
+        let missing = mass(&mesh) - hard;
+        assert!(missing.abs() <= slack, "{name}: mass off by {missing}");
+        error / tolerance
+    });
+    errors.into_iter().fold(0.0, f64::max)
 }
 
 fn cast(shape: &Shape) -> Shadow {

@@ -70,6 +70,8 @@ pub(super) struct RowArc<S: Simd> {
     pub(super) rise: f32,
     /// The x, counted from its centre, of a point of it within the disc's height.
     pub(super) middle: f32x16<S>,
+    /// The same of the point in the middle of that height, which has fewer digits.
+    pub(super) beside: f32x16<S>,
     /// `half_disc` at its start's y and at its end's.
     pub(super) halves: [f32x16<S>; 2],
     /// The area between the whole arc and its chord, over π.
@@ -92,6 +94,9 @@ pub(super) fn segment_of(squared_chord: f32, radius: f32) -> f32 {
     let p = a + t2 * (b + t2 * (c + t2 * (d + t2 * e)));
     squared_chord * squared_chord.sqrt() * p * (0.125 * FRAC_1_PI / radius)
 }
+
+/// So near to the middle, over the disc's radius, a point of its circle is at its top: rounding moves where circles touch by some 1e-3.
+const TOP: f32 = 4e-3;
 
 /// Where the arc's circle crosses the disc's: at one base and as far from it on both sides.
 struct Crossings<S: Simd> {
@@ -182,10 +187,18 @@ impl<S: Simd> RowArc<S> {
     /// The arc's two ends, and which of them are inside.
     #[inline(always)]
     fn ends(&self, simd: S, center_x: f32x16<S>) -> [End<S>; 2] {
+        let beside = self.beside(center_x);
         [
-            End::seen(simd, center_x, &self.from, self.halves[0]),
-            End::seen(simd, center_x, &self.to, self.halves[1]),
+            End::seen(simd, center_x, &self.from, self.halves[0], beside),
+            End::seen(simd, center_x, &self.to, self.halves[1], beside),
         ]
+    }
+
+    /// What tells on which side of the disc the arc is where a point of it lies at the disc's top or bottom: there its x is a matter of
+    /// rounding.
+    #[inline(always)]
+    fn beside(&self, center_x: f32x16<S>) -> f32x16<S> {
+        (center_x + self.beside) * TOP
     }
 
     /// What it adds where all of it is inside.
@@ -198,7 +211,8 @@ impl<S: Simd> RowArc<S> {
     /// What it adds where nothing of it is inside.
     #[inline(always)]
     fn missed(&self, simd: S, center_x: f32x16<S>) -> f32x16<S> {
-        let side = f32x16::splat(simd, 1.0).copysign(center_x + self.middle);
+        let seen = center_x + self.middle + self.beside(center_x);
+        let side = f32x16::splat(simd, 1.0).copysign(seen);
         side * (self.halves[1] - self.halves[0])
     }
 }
@@ -207,8 +221,7 @@ impl<S: Simd> RowArc<S> {
 struct End<S: Simd> {
     point: [f32x16<S>; 2],
     is_in: mask32x16<S>,
-    /// Its x if it is as high as the disc, or 0: a crossing beside it may be at the disc's top, where rounding decides on which side it
-    /// is.
+    /// Its x if it is as high as the disc, or 0, and [`RowArc::beside`]: a crossing beside it may be at the disc's top.
     seen_x: f32x16<S>,
     /// `half_disc` at its y.
     half: f32x16<S>,
@@ -216,12 +229,18 @@ struct End<S: Simd> {
 
 impl<S: Simd> End<S> {
     #[inline(always)]
-    fn seen(simd: S, center_x: f32x16<S>, end: &ArcEnd<S>, half: f32x16<S>) -> Self {
+    fn seen(
+        simd: S,
+        center_x: f32x16<S>,
+        end: &ArcEnd<S>,
+        half: f32x16<S>,
+        beside: f32x16<S>,
+    ) -> Self {
         let (x, zero) = (center_x + end.x, f32x16::splat(simd, 0.0));
         Self {
             point: [x, end.y],
             is_in: x.abs().simd_lt(end.width),
-            seen_x: end.width.simd_gt(zero).select(x, zero),
+            seen_x: end.width.simd_gt(zero).select(x, zero) + beside,
             half,
         }
     }

@@ -265,6 +265,7 @@ impl Piece {
                     to,
                     rise: if self.to.y < self.from.y { -1.0 } else { 1.0 },
                     middle,
+                    beside,
                     halves,
                     segment,
                 };
