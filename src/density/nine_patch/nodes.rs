@@ -44,25 +44,37 @@ pub(super) struct Nodes {
 /// Heights of one row's discs.
 #[derive(Debug, Default)]
 pub(super) struct Row {
-    /// The chords' widths, in pixels, and what each pixel of them weighs.
+    /// How far below a band's middle the chords are and their widths, in pixels, and what each pixel of them weighs.
+    heights: Vec<f32>,
     widths: Vec<f32>,
     weights: Vec<f32>,
+    /// What the rectangle's height leaves of each band's discs, 0 to 1, if its chords are those of whole ones.
+    whole: Vec<Option<f32>>,
     /// How far inside the left side, and the right one, a disc's centre is when its chord begins to be inside: negative, in pixels.
     offsets: [Vec<f32>; 2],
     /// Where each side's offsets are: where both sides are alike, the first one's serve both.
     places: [usize; 2],
     /// What the rectangle's height leaves of the discs, 0 to 1.
     pub(super) between: f32,
+    /// How many chords a band has.
     count: usize,
     y: Option<f64>,
 }
 
 impl Row {
-    /// What discs see of a side: the width of each chord, its offset and the weight of what is inside.
+    /// How many bands there are.
+    pub(super) fn bands(&self) -> usize {
+        self.whole.len()
+    }
+
+    /// What a band's discs see of a side: the width of each chord, its offset and the weight of what is inside.
     #[inline(always)]
-    pub(super) fn chords(&self, side: usize) -> impl Iterator<Item = (f32, f32, f32)> {
-        let offsets = &self.offsets[self.places[side]][..self.count];
-        let lists = self.widths.iter().zip(offsets).zip(&self.weights);
+    pub(super) fn chords(&self, band: usize, side: usize) -> impl Iterator<Item = (f32, f32, f32)> {
+        let start = band * (self.widths.len() / self.bands());
+        let places = start..start + self.count;
+        let offsets = &self.offsets[self.places[side]][places.clone()];
+        let lists = self.widths[places.clone()].iter().zip(offsets);
+        let lists = lists.zip(&self.weights[places]);
         lists.map(|((width, offset), weight)| (*width, *offset, *weight))
     }
 }
@@ -73,15 +85,10 @@ impl Nodes {
         self.kernel.set(radius, levels);
         let largest = shape.radii.into_iter().fold(0.0, f64::max) / self.kernel.reach();
         let more = libm::pow((largest / LARGE).max(1.0), GROWTH);
-        let mut count = (COUNT * more / levels.sqrt()).ceil().max(FEWEST);
-        let lanes = LANES as f64;
-        let filled = (count / lanes).ceil() * lanes;
-        if self.kernel.count() > 1 {
-            // One band's heights follow another's without a gap.
-            count = filled;
-        }
+        let count = (COUNT * more / levels.sqrt()).ceil().max(FEWEST);
         let share = 1.0 / count;
-        let (count, filled) = (count as usize, filled as usize);
+        let count = count as usize;
+        let filled = count.next_multiple_of(LANES);
         self.midpoints.clear();
         self.midpoints
             .extend((0..filled).map(|node| ((node as f64 + 0.5) * share).min(1.0) as f32));
@@ -90,11 +97,19 @@ impl Nodes {
         self.shares.resize(filled, 0.0);
         let (row, bands) = (&mut self.row, self.kernel.count());
         let [left, right] = &mut row.offsets;
-        for list in [&mut row.widths, &mut row.weights, left, right] {
+        let Row {
+            heights,
+            widths,
+            weights,
+            ..
+        } = row;
+        for list in [heights, widths, weights, left, right] {
             list.resize(bands * filled, 0.0);
         }
+        row.whole.clear();
+        row.whole.resize(bands, None);
         let [tl, tr, br, bl] = shape.radii;
-        (row.count, row.y) = (bands * count, None);
+        (row.count, row.y) = (count, None);
         row.places = if tl == tr && bl == br { [0, 0] } else { [0, 1] };
     }
 
@@ -110,14 +125,17 @@ impl Nodes {
             #[inline(always)]
             || {
                 for band in 0..self.kernel.count() {
-                    self.place_band(simd, shape, y + self.kernel.middle(band), band);
+                    let y = y + self.kernel.middle(band);
+                    self.row.between += self.place_chords(simd, shape, y, band);
+                    self.place_offsets(simd, shape, y, band);
                 }
             },
         );
     }
 
+    /// Places the chords of a band of the row's discs; what the rectangle's height leaves of these.
     #[inline(always)]
-    fn place_band<S: Simd>(&mut self, simd: S, shape: &Rounded, y: f64, band: usize) {
+    fn place_chords<S: Simd>(&mut self, simd: S, shape: &Rounded, y: f64, band: usize) -> f32 {
         let Self {
             kernel,
             midpoints,
@@ -125,22 +143,21 @@ impl Nodes {
             row,
         } = self;
         let reach = kernel.reach();
-        let (start, start_cosine, start_above) = end_of(kernel, shape.min.y - y);
-        let (end, end_cosine, end_above) = end_of(kernel, shape.max.y - y);
+        let ends = [shape.min.y - y, shape.max.y - y];
+        let is_whole = ends[0] <= -reach && ends[1] >= reach;
+        if let Some(between) = row.whole[band].filter(|_| is_whole) {
+            return between;
+        }
+        let (start, start_cosine, start_above) = end_of(kernel, ends[0]);
+        let (end, end_cosine, end_above) = end_of(kernel, ends[1]);
         let between = ((end_above - start_above) / kernel.count() as f64) as f32;
-        row.between += between;
+        row.whole[band] = is_whole.then_some(between);
         let splat = |v: f32| f32x16::splat(simd, v);
         let (zero, one) = (splat(0.0), splat(1.0));
         let (start, length) = (start as f32, (end - start) as f32);
         let closer = [start_cosine as f32 * CLOSER, end_cosine as f32 * CLOSER];
-        let [tl, tr, br, bl] = shape.radii;
-        // A corner's radius, and how far beyond the middle of its arc the discs' are.
-        let upper = |corner: f64| (corner as f32, (shape.min.y + corner - y) as f32);
-        let lower = |corner: f64| (corner as f32, (y + corner - shape.max.y) as f32);
-        let corners = [[upper(tl), lower(bl)], [upper(tr), lower(br)]];
         let reach = reach as f32;
         let is_averaged = kernel.is_averaged();
-        let half_side = 0.5 * kernel.side as f32;
         let mut total = zero;
         let first = band * midpoints.len();
         let lists = midpoints.as_chunks::<LANES>().0.iter();
@@ -164,22 +181,9 @@ impl Nodes {
                 weight = share * f32x16::from_slice(simd, &met);
             }
             total += weight * width;
+            (sine * reach).store_slice(&mut row.heights[place.clone()]);
             weight.store_slice(&mut row.weights[place.clone()]);
-            width.store_slice(&mut row.widths[place.clone()]);
-            let below = sine * reach;
-            let sides = row.offsets.iter_mut().zip(corners);
-            for (offsets, corners) in sides.take(1 + row.places[1]) {
-                let mut offset = width * 0.5 + half_side;
-                for ((corner, rise), sign) in corners.into_iter().zip([-1.0, 1.0]) {
-                    if rise + reach <= 0.0 || corner == 0.0 {
-                        continue;
-                    }
-                    let rise = (below * sign + rise).max(zero).min(splat(corner));
-                    let level = ((splat(corner) - rise) * (rise + corner)).sqrt();
-                    offset += level - corner;
-                }
-                offset.store_slice(&mut offsets[place.clone()]);
-            }
+            width.store_slice(&mut row.widths[place]);
         }
         let scale = if between > 0.0 {
             between / sum(total)
@@ -190,6 +194,41 @@ impl Nodes {
         for weights in weights.as_chunks_mut::<LANES>().0 {
             let scaled = f32x16::from_slice(simd, weights) * scale;
             scaled.store_slice(weights);
+        }
+        between
+    }
+
+    /// Places the sides at the heights of a band's chords.
+    #[inline(always)]
+    fn place_offsets<S: Simd>(&mut self, simd: S, shape: &Rounded, y: f64, band: usize) {
+        let (kernel, row) = (&self.kernel, &mut self.row);
+        let splat = |v: f32| f32x16::splat(simd, v);
+        let [tl, tr, br, bl] = shape.radii;
+        // A corner's radius, and how far beyond the middle of its arc the discs' are.
+        let upper = |corner: f64| (corner as f32, (shape.min.y + corner - y) as f32);
+        let lower = |corner: f64| (corner as f32, (y + corner - shape.max.y) as f32);
+        let corners = [[upper(tl), lower(bl)], [upper(tr), lower(br)]];
+        let (reach, half_side) = (kernel.reach() as f32, 0.5 * kernel.side as f32);
+        let count = self.midpoints.len();
+        let places = band * count..(band + 1) * count;
+        let sides = row.offsets.iter_mut().zip(corners);
+        for (offsets, corners) in sides.take(1 + row.places[1]) {
+            let lists = row.heights[places.clone()].as_chunks::<LANES>().0.iter();
+            let lists = lists.zip(row.widths[places.clone()].as_chunks::<LANES>().0);
+            let offsets = offsets[places.clone()].as_chunks_mut::<LANES>().0;
+            for (offsets, (heights, widths)) in offsets.iter_mut().zip(lists) {
+                let below = f32x16::from_slice(simd, heights);
+                let mut offset = f32x16::from_slice(simd, widths) * 0.5 + half_side;
+                for ((corner, rise), sign) in corners.into_iter().zip([-1.0, 1.0]) {
+                    if rise + reach <= 0.0 || corner == 0.0 {
+                        continue;
+                    }
+                    let rise = (below * sign + rise).max(splat(0.0)).min(splat(corner));
+                    let level = ((splat(corner) - rise) * (rise + corner)).sqrt();
+                    offset += level - corner;
+                }
+                offset.store_slice(offsets);
+            }
         }
     }
 }
@@ -265,7 +304,8 @@ mod tests {
                 for step in -30..=60 {
                     let y = f64::from(step) * 0.71;
                     dispatch!(Level::new(), simd => nodes.place(simd, &shape, y));
-                    let chords = nodes.row.chords(1);
+                    let bands = 0..nodes.row.bands();
+                    let chords = bands.flat_map(|band| nodes.row.chords(band, 1));
                     let all: f32 = chords.map(|(width, _, weight)| width * weight).sum();
                     let between = nodes.kernel.between([shape.min.y - y, shape.max.y - y]);
                     let label = format!("r {radius}, {levels} levels, y {y}");

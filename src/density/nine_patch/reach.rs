@@ -80,21 +80,23 @@ impl Reach<'_> {
             let splat = |v: f32| f32x16::splat(simd, v);
             if self.square > 0.0 {
                 let (square, share) = (splat(self.square), splat(0.5 / self.square));
-                for (width, offset, weight) in self.row.chords(side) {
-                    let (offset, width, weight) = (splat(offset), splat(width), splat(weight));
-                    for block in 0..BLOCKS {
-                        // A chord's end enters the square from one side on, and its other end after it.
-                        let entered = depths[block] + offset;
-                        let (first, last) = (entered.max(zero), (entered - width).max(zero));
-                        let (near, far) = (first.min(square), last.min(square));
-                        let inside =
-                            (near * near - far * far) * share + ((first - near) - (last - far));
-                        sums[block] += inside * weight;
+                for band in 0..self.row.bands() {
+                    for (width, offset, weight) in self.row.chords(band, side) {
+                        let (offset, width, weight) = (splat(offset), splat(width), splat(weight));
+                        for block in 0..BLOCKS {
+                            // A chord's end enters the square from one side on, and its other end after it.
+                            let entered = depths[block] + offset;
+                            let (first, last) = (entered.max(zero), (entered - width).max(zero));
+                            let (near, far) = (first.min(square), last.min(square));
+                            let inside =
+                                (near * near - far * far) * share + ((first - near) - (last - far));
+                            sums[block] += inside * weight;
+                        }
                     }
                 }
                 continue;
             }
-            for (width, offset, weight) in self.row.chords(side) {
+            for (width, offset, weight) in self.row.chords(0, side) {
                 let (offset, width, weight) = (splat(offset), splat(width), splat(weight));
                 for block in 0..BLOCKS {
                     let inside = (depths[block] + offset).max(zero).min(width);
