@@ -58,12 +58,12 @@ pub struct PixelOptions<'a> {
 /// Takes the densities that a method computes; those it is not given are 0. What it is given of a pixel more than once, by
 /// neighbouring parts of a shadow, adds up.
 pub(crate) trait Sink {
-    /// One density for some columns of row `y`.
-    fn constant(&mut self, y: u32, columns: Range<u32>, density: f32);
+    /// One density for some columns of some rows.
+    fn constant(&mut self, rows: Range<u32>, columns: Range<u32>, density: f32);
 
-    /// The densities of some columns of row `y`, at least as many: those behind them count for nothing, but where there are
-    /// enough of them they save a copy.
-    fn values(&mut self, y: u32, columns: Range<u32>, densities: &[f32]);
+    /// The densities of some columns, the same in each of some rows, at least as many as columns: those behind them count for nothing,
+    /// but where there are enough of them they save a copy.
+    fn values(&mut self, rows: Range<u32>, columns: Range<u32>, densities: &[f32]);
 }
 
 /// Calls `put` for each pixel that is given a density.
@@ -75,20 +75,24 @@ pub(crate) struct Each<'a, T, F> {
 
 impl<T, F: FnMut(&mut T, f32)> Sink for Each<'_, T, F> {
     #[inline(always)]
-    fn constant(&mut self, y: u32, columns: Range<u32>, density: f32) {
-        let start = y as usize * self.stride;
-        for pixel in &mut self.pixels[start + columns.start as usize..start + columns.end as usize]
-        {
-            (self.put)(pixel, density);
+    fn constant(&mut self, rows: Range<u32>, columns: Range<u32>, density: f32) {
+        for y in rows {
+            let start = y as usize * self.stride;
+            let (start, end) = (start + columns.start as usize, start + columns.end as usize);
+            for pixel in &mut self.pixels[start..end] {
+                (self.put)(pixel, density);
+            }
         }
     }
 
     #[inline(always)]
-    fn values(&mut self, y: u32, columns: Range<u32>, densities: &[f32]) {
-        let start = y as usize * self.stride;
-        let pixels = &mut self.pixels[start + columns.start as usize..start + columns.end as usize];
-        for (pixel, density) in pixels.iter_mut().zip(densities) {
-            (self.put)(pixel, *density);
+    fn values(&mut self, rows: Range<u32>, columns: Range<u32>, densities: &[f32]) {
+        for y in rows {
+            let start = y as usize * self.stride;
+            let (start, end) = (start + columns.start as usize, start + columns.end as usize);
+            for (pixel, density) in self.pixels[start..end].iter_mut().zip(densities) {
+                (self.put)(pixel, *density);
+            }
         }
     }
 }

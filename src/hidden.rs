@@ -162,6 +162,18 @@ impl Hidden {
         }
     }
 
+    /// How many of some rows, from the first one on, hide the same columns.
+    pub(crate) fn alike(&self, rows: Range<u32>) -> u32 {
+        let columns = |span: &Span| span.start..span.end;
+        let first = self.of_row(rows.start);
+        let is_alike = |row: &u32| {
+            let spans = self.of_row(*row);
+            spans.iter().map(columns).eq(first.iter().map(columns))
+        };
+        let others = rows.start + 1..rows.end;
+        1 + others.take_while(is_alike).count() as u32
+    }
+
     fn of_row(&self, row: u32) -> &[Span] {
         let row = row as usize;
         &self.spans[self.rows[row] as usize..self.rows[row + 1] as usize]

@@ -338,7 +338,7 @@ impl NinePatch {
             let (first, last) = (on_grid(start + left), on_grid(end - right));
             if first < last {
                 let density = blend::density(mask[left as usize]);
-                canvas.constant(row, first as u32..last as u32, density);
+                canvas.constant(row..row + 1, first as u32..last as u32, density);
             }
         }
     }

@@ -149,7 +149,7 @@ pub const COSTS: Costs = Costs {
     average: 10.2,
     sum: 0.7,
     sum_row: 42.0,
-    rounded: 0.5,
+    rounded: 0.3,
     exact: 130.0,
     exact_average: 25.0,
     strips: 1e7,

@@ -135,7 +135,7 @@ impl Fusion {
             let held = self.pixels.held(at);
             if let Some(part) = held_back(held) {
                 let [first, end] = [part.start, part.end].map(|at| columns.start + at as u32);
-                sink.values(y, first..end, &held[part.start..]);
+                sink.values(y..y + 1, first..end, &held[part.start..]);
             }
         }
     }
@@ -184,35 +184,39 @@ impl Pass<'_> {
 }
 
 impl Sink for Pass<'_> {
-    fn constant(&mut self, y: u32, columns: Range<u32>, density: f32) {
-        let [left, shared, right] = self.parts(y, &columns);
-        if !shared.is_empty() {
-            let at = self.shared(y, &shared);
-            self.pixels.add_constant(self.level, at, density, self.by);
-        }
+    fn constant(&mut self, rows: Range<u32>, columns: Range<u32>, density: f32) {
         let held = self.by.alone(density);
-        for part in [left, right] {
-            if !part.is_empty() && held != 0.0 {
-                self.sink.constant(y, part, held);
+        for y in rows {
+            let [left, shared, right] = self.parts(y, &columns);
+            if !shared.is_empty() {
+                let at = self.shared(y, &shared);
+                self.pixels.add_constant(self.level, at, density, self.by);
+            }
+            for part in [left, right] {
+                if !part.is_empty() && held != 0.0 {
+                    self.sink.constant(y..y + 1, part, held);
+                }
             }
         }
     }
 
-    fn values(&mut self, y: u32, columns: Range<u32>, densities: &[f32]) {
-        let [left, shared, right] = self.parts(y, &columns);
+    fn values(&mut self, rows: Range<u32>, columns: Range<u32>, densities: &[f32]) {
         let of = |part: &Range<u32>| {
             &densities[(part.start - columns.start) as usize..(part.end - columns.start) as usize]
         };
-        if !shared.is_empty() {
-            let at = self.shared(y, &shared);
-            self.pixels.add_values(self.level, at, of(&shared), self.by);
-        }
-        for part in [left, right] {
-            if !part.is_empty() {
-                let held = of(&part).iter().map(|&density| self.by.alone(density));
-                self.row.clear();
-                self.row.extend(held);
-                self.sink.values(y, part, self.row);
+        for y in rows {
+            let [left, shared, right] = self.parts(y, &columns);
+            if !shared.is_empty() {
+                let at = self.shared(y, &shared);
+                self.pixels.add_values(self.level, at, of(&shared), self.by);
+            }
+            for part in [left, right] {
+                if !part.is_empty() {
+                    let held = of(&part).iter().map(|&density| self.by.alone(density));
+                    self.row.clear();
+                    self.row.extend(held);
+                    self.sink.values(y..y + 1, part, self.row);
+                }
             }
         }
     }

@@ -114,7 +114,7 @@ impl AlphaShadow {
             }
             for (column, density) in columns.clone().zip(&densities) {
                 if *density > 0.0 && hidden.is_none_or(|hidden| !hidden.hides(column, row)) {
-                    sink.values(row, column..column + 1, &[density.min(1.0) as f32]);
+                    sink.values(row..row + 1, column..column + 1, &[density.min(1.0) as f32]);
                 }
             }
         }

@@ -48,20 +48,28 @@ impl Rgba8<'_> {
 }
 
 impl Sink for Rgba8<'_> {
-    fn constant(&mut self, y: u32, columns: Range<u32>, density: f32) {
+    fn constant(&mut self, rows: Range<u32>, columns: Range<u32>, density: f32) {
         let (layout, ink, first) = (&self.layout, &self.ink, columns.start);
-        let pixels = from(self.pixels, layout, y, first);
         let count = columns.len();
-        dispatch!(self.level, simd => {
+        dispatch!(self.level, simd => for y in rows {
+            let pixels = from(self.pixels, layout, y, first);
             ink.blend_constant(simd, pixels, count, density, (layout, y, first));
         });
     }
 
-    fn values(&mut self, y: u32, columns: Range<u32>, densities: &[f32]) {
+    fn values(&mut self, rows: Range<u32>, columns: Range<u32>, densities: &[f32]) {
         let (layout, ink, first) = (&self.layout, &self.ink, columns.start);
-        let pixels = from(self.pixels, layout, y, first);
         let count = columns.len();
-        dispatch!(self.level, simd => {
+        if rows.len() > 1 && layout.dither.is_none() {
+            let (y, rows) = (rows.start, rows.len());
+            let pixels = from(self.pixels, layout, y, first);
+            dispatch!(self.level, simd => {
+                ink.blend_rows(simd, pixels, rows, count, densities, (layout, y, first));
+            });
+            return;
+        }
+        dispatch!(self.level, simd => for y in rows {
+            let pixels = from(self.pixels, layout, y, first);
             ink.blend_values(simd, pixels, count, densities, (layout, y, first));
         });
     }
@@ -94,14 +102,15 @@ impl Ink {
         (layout, y, first): (&Layout, u32, u32),
     ) {
         let brush = Brush::new(simd, self, &thresholds(layout, y, first));
-        let opacity = brush.opacity(f32x8::splat(simd, density));
-        let paint = brush.paint(opacity);
+        let coat = brush.coat(f32x8::splat(simd, density));
         let (blocks, rest) = pixels.split_at_mut(4 * (count - count % PIXELS));
         for block in blocks.as_chunks_mut::<BLOCK>().0 {
-            brush.blend(block, opacity, paint);
+            brush.blend(block, &coat);
         }
         if !count.is_multiple_of(PIXELS) {
-            brush.blend_rest(rest, count % PIXELS, f32x8::splat(simd, density));
+            let last = count % PIXELS;
+            let coat = brush.coat(brush.within([density; PIXELS], last));
+            brush.blend_rest(rest, last, &coat);
         }
     }
 
@@ -119,11 +128,50 @@ impl Ink {
         let (parts, last) = densities[..count].as_chunks::<PIXELS>();
         let (blocks, rest) = pixels.split_at_mut(BLOCK * parts.len());
         for (block, part) in blocks.as_chunks_mut::<BLOCK>().0.iter_mut().zip(parts) {
-            brush.blend_part(block, part);
+            brush.blend(block, &brush.coat(f32x8::simd_from(simd, *part)));
         }
         if !last.is_empty() {
-            let part: [f32; PIXELS] = last_block(densities, count, last.len());
-            brush.blend_rest(rest, last.len(), f32x8::simd_from(simd, part));
+            let part = last_block(densities, count, last.len());
+            let coat = brush.coat(brush.within(part, last.len()));
+            brush.blend_rest(rest, last.len(), &coat);
+        }
+    }
+
+    /// Blends the first `count` densities onto pixels of each of some rows which round alike: they are paint once.
+    #[inline(always)]
+    fn blend_rows<S: Simd>(
+        &self,
+        simd: S,
+        mut pixels: &mut [u8],
+        rows: usize,
+        count: usize,
+        mut densities: &[f32],
+        (layout, y, first): (&Layout, u32, u32),
+    ) {
+        let brush = Brush::new(simd, self, &thresholds(layout, y, first));
+        let mut left = count;
+        while left > 0 {
+            let count = left.min(COATS * PIXELS);
+            let (parts, last) = densities[..count].as_chunks::<PIXELS>();
+            let rest = brush.within(last_block(densities, count, last.len()), last.len());
+            let rest = brush.coat(rest);
+            let mut coats = [rest; COATS];
+            let coats = &mut coats[..parts.len()];
+            for (coat, part) in coats.iter_mut().zip(parts) {
+                *coat = brush.coat(f32x8::simd_from(simd, *part));
+            }
+            for row in 0..rows {
+                let pixels = &mut pixels[4 * row * layout.stride..];
+                let (blocks, end) = pixels.split_at_mut(BLOCK * coats.len());
+                for (block, coat) in blocks.as_chunks_mut::<BLOCK>().0.iter_mut().zip(&*coats) {
+                    brush.blend(block, coat);
+                }
+                if !last.is_empty() {
+                    brush.blend_rest(end, last.len(), &rest);
+                }
+            }
+            left -= count;
+            (pixels, densities) = (&mut pixels[4 * count..], &densities[count..]);
         }
     }
 
@@ -140,7 +188,7 @@ impl Ink {
         let (parts, last) = mask.as_chunks::<PIXELS>();
         let (blocks, rest) = pixels.split_at_mut(BLOCK * parts.len());
         for (block, part) in blocks.as_chunks_mut::<BLOCK>().0.iter_mut().zip(parts) {
-            brush.blend_part(block, &densities(part));
+            brush.blend(block, &brush.coat(f32x8::simd_from(simd, densities(part))));
         }
         if !last.is_empty() {
             let part = match mask.last_chunk() {
@@ -154,8 +202,8 @@ impl Ink {
                     part
                 }
             };
-            let densities = f32x8::simd_from(simd, densities(&part));
-            brush.blend_rest(rest, last.len(), densities);
+            let coat = brush.coat(brush.within(densities(&part), last.len()));
+            brush.blend_rest(rest, last.len(), &coat);
         }
     }
 }
@@ -185,6 +233,20 @@ struct Brush<S: Simd> {
     thresholds: u16x16<S>,
 }
 
+/// Paint on a block's pixels.
+#[derive(Clone, Copy)]
+struct Coat<S: Simd> {
+    /// In 65535ths.
+    opacity: u16x16<S>,
+    /// What paint and rounding add to both pairs of channels, in 256ths: with what is left of a channel these are 255 upper bytes and
+    /// 1 at most, a threshold is 254 lower ones.
+    red_blue: u16x16<S>,
+    green_alpha: u16x16<S>,
+}
+
+/// Blocks that are painted at once on rows that are alike.
+const COATS: usize = 16;
+
 impl<S: Simd> Brush<S> {
     #[inline(always)]
     fn new(simd: S, ink: &Ink, thresholds: &[u16; 8]) -> Self {
@@ -201,54 +263,47 @@ impl<S: Simd> Brush<S> {
         }
     }
 
-    /// The paint's opacity on a block's pixels, in 65535ths.
+    /// The first `count` of a block's densities, and 0 for other pixels, which leaves them as they are.
     #[inline(always)]
-    fn opacity(&self, densities: f32x8<S>) -> u16x16<S> {
-        let opacity: i32x8<S> = (densities * self.strength + 0.5).to_int();
-        let opacity: u32x8<S> = opacity.bitcast();
-        (opacity | (opacity << 16)).bitcast()
-    }
-
-    /// What the paint and rounding add to both pairs of channels, in 256ths.
-    #[inline(always)]
-    fn paint(&self, opacity: u16x16<S>) -> [u16x16<S>; 2] {
-        // With what is left of a channel these are 255 upper bytes and 1 at most, a threshold is 254 lower ones.
-        [
-            high(self.simd, self.red_blue, opacity) + self.thresholds,
-            high(self.simd, self.green_alpha, opacity) + self.thresholds,
-        ]
-    }
-
-    #[inline(always)]
-    fn blend_part(&self, block: &mut [u8; BLOCK], densities: &[f32; PIXELS]) {
-        let opacity = self.opacity(f32x8::simd_from(self.simd, *densities));
-        self.blend(block, opacity, self.paint(opacity));
-    }
-
-    /// Blends the first `count` of a block's densities, and 0 onto other pixels, which leaves them as they are.
-    #[inline(always)]
-    fn blend_rest(&self, rest: &mut [u8], count: usize, densities: f32x8<S>) {
+    fn within(&self, densities: [f32; PIXELS], count: usize) -> f32x8<S> {
         let lanes = f32x8::from_slice(self.simd, &NUMBERS[..PIXELS]);
         let within = lanes.simd_lt(f32x8::splat(self.simd, count as f32));
-        let densities = within.select(densities, f32x8::splat(self.simd, 0.0));
-        let opacity = self.opacity(densities);
+        let densities = f32x8::simd_from(self.simd, densities);
+        within.select(densities, f32x8::splat(self.simd, 0.0))
+    }
+
+    #[inline(always)]
+    fn coat(&self, densities: f32x8<S>) -> Coat<S> {
+        let opacity: i32x8<S> = (densities * self.strength + 0.5).to_int();
+        let opacity: u32x8<S> = opacity.bitcast();
+        let opacity = (opacity | (opacity << 16)).bitcast();
+        Coat {
+            opacity,
+            red_blue: high(self.simd, self.red_blue, opacity) + self.thresholds,
+            green_alpha: high(self.simd, self.green_alpha, opacity) + self.thresholds,
+        }
+    }
+
+    #[inline(always)]
+    fn blend(&self, block: &mut [u8; BLOCK], coat: &Coat<S>) {
+        let pixels: u16x16<S> = u8x32::simd_from(self.simd, *block).bitcast();
+        let red_blue = over(self.simd, pixels << 8, coat.opacity, coat.red_blue) >> 8;
+        let green_alpha = over(self.simd, pixels & UPPER, coat.opacity, coat.green_alpha) & UPPER;
+        let mixed: u8x32<S> = (red_blue | green_alpha).bitcast();
+        *block = mixed.into();
+    }
+
+    /// Blends a coat that leaves all but the first `count` pixels as they are, where there may be no others.
+    #[inline(always)]
+    fn blend_rest(&self, rest: &mut [u8], count: usize, coat: &Coat<S>) {
         if let Some(block) = rest.first_chunk_mut() {
-            self.blend(block, opacity, self.paint(opacity));
+            self.blend(block, coat);
             return;
         }
         let (mut block, rest) = ([0; BLOCK], &mut rest[..4 * count]);
         block[..rest.len()].copy_from_slice(rest);
-        self.blend(&mut block, opacity, self.paint(opacity));
+        self.blend(&mut block, coat);
         rest.copy_from_slice(&block[..rest.len()]);
-    }
-
-    #[inline(always)]
-    fn blend(&self, block: &mut [u8; BLOCK], opacity: u16x16<S>, paint: [u16x16<S>; 2]) {
-        let pixels: u16x16<S> = u8x32::simd_from(self.simd, *block).bitcast();
-        let red_blue = over(self.simd, pixels << 8, opacity, paint[0]) >> 8;
-        let green_alpha = over(self.simd, pixels & UPPER, opacity, paint[1]) & UPPER;
-        let mixed: u8x32<S> = (red_blue | green_alpha).bitcast();
-        *block = mixed.into();
     }
 }
 

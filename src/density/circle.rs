@@ -54,7 +54,11 @@ pub(crate) fn fill<S: Simd>(
             let column = |x: i64| (x - frame.first[0]) as u32;
             let constant = within(&even);
             if !constant.is_empty() {
-                sink.constant(row, column(constant.start)..column(constant.end), inside);
+                sink.constant(
+                    row..row + 1,
+                    column(constant.start)..column(constant.end),
+                    inside,
+                );
             }
             for side in [reached.start..even.start, even.end..reached.end] {
                 let part = within(&side);
@@ -69,7 +73,7 @@ pub(crate) fn fill<S: Simd>(
                     let count = (part.end - part.start) as usize;
                     values.resize(count.next_multiple_of(LANES), 0.0);
                     fill_row(simd, &circle, skipped, values);
-                    sink.values(row, column(part.start)..column(part.end), values);
+                    sink.values(row..row + 1, column(part.start)..column(part.end), values);
                 }
             }
         }

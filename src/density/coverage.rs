@@ -42,16 +42,18 @@ impl A8<'_> {
 }
 
 impl Sink for A8<'_> {
-    fn constant(&mut self, y: u32, columns: Range<u32>, density: f32) {
-        let level = self.level;
-        let (mask, thresholds) = self.from(y, columns.start);
-        dispatch!(level, simd => add_constant(simd, mask, columns.len(), density, thresholds));
+    fn constant(&mut self, rows: Range<u32>, columns: Range<u32>, density: f32) {
+        dispatch!(self.level, simd => for y in rows {
+            let (mask, thresholds) = self.from(y, columns.start);
+            add_constant(simd, mask, columns.len(), density, thresholds);
+        });
     }
 
-    fn values(&mut self, y: u32, columns: Range<u32>, densities: &[f32]) {
-        let level = self.level;
-        let (mask, thresholds) = self.from(y, columns.start);
-        dispatch!(level, simd => add_values(simd, mask, columns.len(), densities, thresholds));
+    fn values(&mut self, rows: Range<u32>, columns: Range<u32>, densities: &[f32]) {
+        dispatch!(self.level, simd => for y in rows {
+            let (mask, thresholds) = self.from(y, columns.start);
+            add_values(simd, mask, columns.len(), densities, thresholds);
+        });
     }
 }
 
@@ -160,20 +162,20 @@ mod tests {
                     stride: 1004,
                     dither,
                 };
-                let mut mask = vec![40; 3 * layout.stride];
+                let mut mask = vec![40; 4 * layout.stride];
                 let mut sink = A8 {
                     level: Level::new(),
                     mask: &mut mask,
                     layout,
                 };
-                sink.values(1, 2..2 + count, &densities);
-                sink.constant(2, 2..2 + count, 0.3);
-                let thresholds = [1, 2].map(|y| thresholds(&layout, y, 2));
+                sink.values(1..3, 2..2 + count, &densities);
+                sink.constant(3..4, 2..2 + count, 0.3);
+                let thresholds = [1, 2, 3].map(|y| thresholds(&layout, y, 2));
                 for (index, covered) in mask.iter().enumerate() {
                     let (y, x) = (index / layout.stride, index % layout.stride);
                     let drawn = y > 0 && (2..2 + count as usize).contains(&x);
                     let expected = if drawn {
-                        let density = if y == 1 { densities[x - 2] } else { 0.3 };
+                        let density = if y < 3 { densities[x - 2] } else { 0.3 };
                         let threshold = u32::from(thresholds[y - 1][(x - 2) % PATTERN]);
                         (40 + (((density * 65_280.0) as u32 + threshold) >> 8)).min(255)
                     } else {

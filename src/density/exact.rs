@@ -110,7 +110,8 @@ impl Painter<'_> {
                         } else {
                             1.0
                         };
-                        self.sink.values(row, column..column + 1, &[density as f32]);
+                        self.sink
+                            .values(row..row + 1, column..column + 1, &[density as f32]);
                     }
                 }
             }
@@ -179,6 +180,8 @@ fn winds_round(edges: &[Edge]) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use core::ops::Range;
+
     use glam::DAffine2;
 
     use super::*;
@@ -255,8 +258,8 @@ mod tests {
     struct Nowhere;
 
     impl Sink for Nowhere {
-        fn constant(&mut self, _: u32, _: core::ops::Range<u32>, _: f32) {}
-        fn values(&mut self, _: u32, _: core::ops::Range<u32>, _: &[f32]) {}
+        fn constant(&mut self, _: Range<u32>, _: Range<u32>, _: f32) {}
+        fn values(&mut self, _: Range<u32>, _: Range<u32>, _: &[f32]) {}
     }
 
     #[test]

@@ -141,27 +141,34 @@ pub(crate) fn fill<S: Simd>(
     };
     let origin = frame.first[0];
     let column = |x: i64| (x - origin) as u32;
-    for (line, place) in lattice.lines(lines) {
-        let number = (line - frame.first[1]) as u32;
-        seen_columns(options.hidden, number, &frame, &columns, wanted);
+    for (lines, place) in lattice.lines(lines) {
         let cell = lattice.cell(place);
-        for wanted in wanted.iter() {
-            let (start, end) = (wanted.start.max(middle.start), wanted.end.min(middle.end));
-            if start < end {
-                let y = line as f64;
-                let ends = [shape.min.y - y, shape.max.y - y];
-                let between = kept.nodes.kernel.between(ends);
-                if between > 0.0 {
-                    sink.constant(number, column(start)..column(end), between);
-                }
-            }
-            for zone in 0..zones {
-                let (first, last) = (kept.zones[zone].start, kept.zones[zone].end);
-                let (start, end) = (wanted.start.max(first), wanted.end.min(last));
+        let [mut next, end] = [lines.start, lines.end].map(|line| (line - frame.first[1]) as u32);
+        while next < end {
+            let alike = options
+                .hidden
+                .map_or(end - next, |hidden| hidden.alike(next..end));
+            let rows = next..next + alike;
+            next = rows.end;
+            seen_columns(options.hidden, rows.start, &frame, &columns, wanted);
+            for wanted in wanted.iter() {
+                let (start, end) = (wanted.start.max(middle.start), wanted.end.min(middle.end));
                 if start < end {
-                    let part = (start - first) as usize..(end - first) as usize;
-                    let densities = kept.row(simd, zone, &cell, &lattice, part);
-                    sink.values(number, column(start)..column(end), densities);
+                    let y = lines.start as f64;
+                    let ends = [shape.min.y - y, shape.max.y - y];
+                    let between = kept.nodes.kernel.between(ends);
+                    if between > 0.0 {
+                        sink.constant(rows.clone(), column(start)..column(end), between);
+                    }
+                }
+                for zone in 0..zones {
+                    let (first, last) = (kept.zones[zone].start, kept.zones[zone].end);
+                    let (start, end) = (wanted.start.max(first), wanted.end.min(last));
+                    if start < end {
+                        let part = (start - first) as usize..(end - first) as usize;
+                        let densities = kept.row(simd, zone, &cell, &lattice, part);
+                        sink.values(rows.clone(), column(start)..column(end), densities);
+                    }
                 }
             }
         }

@@ -442,11 +442,15 @@ impl Rows {
             let first = (start - origin) as u32;
             match span.kind {
                 Kind::Constant(density) => {
-                    sink.constant(y, first..(end - origin) as u32, density);
+                    sink.constant(y..y + 1, first..(end - origin) as u32, density);
                 }
                 Kind::Values(place) => {
                     let place = place + (start - span.columns.start) as usize;
-                    sink.values(y, first..(end - origin) as u32, &self.values[place..]);
+                    sink.values(
+                        y..y + 1,
+                        first..(end - origin) as u32,
+                        &self.values[place..],
+                    );
                 }
             }
         }

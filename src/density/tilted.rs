@@ -112,7 +112,7 @@ pub(crate) fn fill(
                     }
                     let density = constant.unwrap_or_else(|| painter.pixel([column, row]));
                     if density > 0.0 {
-                        sink.values(y, x..x + 1, &[density as f32]);
+                        sink.values(y..y + 1, x..x + 1, &[density as f32]);
                     }
                 }
             }

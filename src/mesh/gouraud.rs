@@ -30,7 +30,7 @@ impl ShadowMesh {
     pub(crate) fn scan_convert(&self, grid: &Grid, hidden: Option<&Hidden>, sink: &mut dyn Sink) {
         let mut put = |column: u32, row: u32, density: f32| {
             if hidden.is_none_or(|hidden| !hidden.hides(column, row)) {
-                sink.values(row, column..column + 1, &[density]);
+                sink.values(row..row + 1, column..column + 1, &[density]);
             }
         };
         for triangle in self.triangles() {
@@ -64,6 +64,8 @@ fn draw(triangle: [MeshVertex; 3], grid: &Grid, put: &mut impl FnMut(u32, u32, f
 
 #[cfg(test)]
 mod tests {
+    use core::ops::Range;
+
     use super::*;
 
     /// Counts how often each pixel is given.
@@ -74,17 +76,19 @@ mod tests {
     }
 
     impl Sink for Count {
-        fn constant(&mut self, y: u32, columns: core::ops::Range<u32>, density: f32) {
+        fn constant(&mut self, rows: Range<u32>, columns: Range<u32>, density: f32) {
             for x in columns {
-                self.values(y, x..x + 1, &[density]);
+                self.values(rows.clone(), x..x + 1, &[density]);
             }
         }
 
-        fn values(&mut self, y: u32, columns: core::ops::Range<u32>, densities: &[f32]) {
-            for (x, density) in columns.zip(densities) {
-                let index = (y * self.width + x) as usize;
-                self.hits[index] += 1;
-                self.densities[index] = *density;
+        fn values(&mut self, rows: Range<u32>, columns: Range<u32>, densities: &[f32]) {
+            for y in rows {
+                for (x, density) in columns.clone().zip(densities) {
+                    let index = (y * self.width + x) as usize;
+                    self.hits[index] += 1;
+                    self.densities[index] = *density;
+                }
             }
         }
     }

@@ -202,7 +202,11 @@ impl Weaver<'_> {
             let first = (at - origin) as u32;
             match constant {
                 Some(density) if density > 0.0 => {
-                    sink.constant(number, first..(end - origin) as u32, density.min(1.0));
+                    sink.constant(
+                        number..number + 1,
+                        first..(end - origin) as u32,
+                        density.min(1.0),
+                    );
                 }
                 Some(_) => {}
                 None => {
@@ -220,7 +224,7 @@ impl Weaver<'_> {
                     ];
                     cubic::between(simd, [a, b, c, d], weights, values);
                     let columns = first..first + count as u32;
-                    sink.values(number, columns, &values[before..]);
+                    sink.values(number..number + 1, columns, &values[before..]);
                 }
             }
             at = end;

@@ -84,26 +84,50 @@ impl Lattice {
             .map_or(place, |mirror| place.min(mirror as f64 - place))
     }
 
-    /// Rows of pixels and where they are among the lattice's: those that need the same rows one after another.
-    pub(super) fn lines(&self, lines: Range<i64>) -> impl Iterator<Item = (i64, f64)> {
+    /// Rows of pixels that are alike and where they are among the lattice's: those that need the same rows one after another.
+    pub(super) fn lines(&self, lines: Range<i64>) -> impl Iterator<Item = (Range<i64>, f64)> {
         let place = |line: i64| self.folded_at(line as f64);
-        let mut left = lines;
-        let mut ends = [place(left.start), place(left.end - 1)];
+        let mut alike = self.alike_lines(&lines);
+        let (mut above, mut below) = (lines.start..alike.start, alike.end..lines.end);
+        let mut ends = [place(above.start), place(below.end - 1)];
         core::iter::from_fn(move || {
-            if left.is_empty() {
-                return None;
-            }
             let [first, last] = ends;
-            if last < first {
-                left.end -= 1;
-                ends[1] = place(left.end - 1);
-                Some((left.end, last))
+            if !below.is_empty() && (above.is_empty() || last < first) {
+                below.end -= 1;
+                ends[1] = place(below.end - 1);
+                Some((below.end..below.end + 1, last))
+            } else if !above.is_empty() {
+                above.start += 1;
+                ends[0] = place(above.start);
+                Some((above.start - 1..above.start, first))
             } else {
-                left.start += 1;
-                ends[0] = place(left.start);
-                Some((left.start - 1, first))
+                let lines = core::mem::replace(&mut alike, 0..0);
+                (!lines.is_empty()).then(|| (lines.clone(), place(lines.start)))
             }
         })
+    }
+
+    /// Those of some rows of pixels for which all of the lattice's are alike; from their middle on where there are none.
+    fn alike_lines(&self, lines: &Range<i64>) -> Range<i64> {
+        let on_lines = |line: i64| line.clamp(lines.start, lines.end);
+        let line = |row: i64| self.start + row as f64 * self.pitch;
+        let mut start = on_lines(line(self.straight).ceil() as i64);
+        let mut end = on_lines(line(self.straight + self.alike).floor() as i64 + 1);
+        let is_alike = |line: i64| {
+            let cell = self.cell(self.folded_at(line as f64));
+            cell.rows == [self.straight; 4]
+        };
+        while start < end && !is_alike(start) {
+            start += 1;
+        }
+        while start < end && !is_alike(end - 1) {
+            end -= 1;
+        }
+        if start < end {
+            return start..end;
+        }
+        let middle = on_lines(self.shape.min.y.midpoint(self.shape.max.y) as i64);
+        middle..middle
     }
 
     /// The cell at a place among the rows.

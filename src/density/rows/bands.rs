@@ -387,13 +387,13 @@ impl Bands {
             match span.kind {
                 Kind::Constant(densities) => {
                     if densities[row] > 0.0 {
-                        sink.constant(y, on_grid, densities[row]);
+                        sink.constant(y..y + 1, on_grid, densities[row]);
                     }
                 }
                 Kind::Values(place) => {
                     let width = (span.columns.end - span.columns.start) as usize;
                     let place = place + row * width + (start - span.columns.start) as usize;
-                    sink.values(y, on_grid, &self.values[place..]);
+                    sink.values(y..y + 1, on_grid, &self.values[place..]);
                 }
             }
         }
