@@ -94,10 +94,11 @@ impl Inside {
         let (least, most) = (upper.x.min(lower.x), upper.x.max(lower.x));
         let at = |y: f64| (upper.x + (y - upper.y) * slope).clamp(least, most);
         // A level line is passed by all of its row.
-        let (mut top, level) = (at(first), upper.y == lower.y);
+        let level = upper.y == lower.y;
         for row in first as u32..end as u32 {
             let y = f64::from(row);
-            let bottom = at(y + 1.0);
+            // What it stands for may pass the row where the line itself is so much above or below.
+            let (top, bottom) = (at(y - margin), at(y + 1.0 + margin));
             let crosses = upper.y <= y + 0.5 && y + 0.5 < lower.y;
             let (left, right) = if level {
                 (least, most)
@@ -111,7 +112,6 @@ impl Inside {
                 left: floor(left - margin),
                 right: -floor(-right - margin),
             });
-            top = bottom;
         }
     }
 
