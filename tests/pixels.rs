@@ -204,6 +204,39 @@ fn discs_that_touch_a_corner_at_their_top_keep_the_tolerance() {
     summary.finish();
 }
 
+/// About the centre of a circle as large as the disc the density has a tip, which averages of few points do not hold.
+#[test]
+fn dots_as_large_as_the_disc_keep_the_tolerance() {
+    let (mut scratch, mut summary) = (Scratch::new(), Summary::default());
+    let grid = Grid::new([0.0, 0.0], [24, 24], 1.0).unwrap();
+    for radius in (6..52).map(|step: u8| 0.05 * f32::from(step)) {
+        let light = Light::directional([0.0, 0.0], radius).unwrap();
+        for size in [0.95, 1.0, 1.05, 1.2].map(|ratio| ratio * radius) {
+            for [x, y] in [[11.5, 11.5], [11.6, 11.5]] {
+                let (left, side) = ([x - size, y - size], 2.0 * size);
+                let dot = Shape::circle([x, y], size).unwrap();
+                let pill = Shape::rounded_rect(left[0], left[1], side + 4.0, side, size).unwrap();
+                let tall = Shape::rounded_rect(left[0], left[1], side, side + 4.0, size).unwrap();
+                let other = Shape::rect(20.0, 20.0, 2.0, 2.0).unwrap();
+                let casters = [
+                    ("dot", vec![dot.clone()]),
+                    ("dot and another shape", vec![dot, other.clone()]),
+                    ("pill", vec![pill]),
+                    ("pill and another shape", vec![tall, other]),
+                ];
+                for (name, shapes) in casters {
+                    let shadow = light.cast_all(&shapes, 1.0, 0.0).unwrap();
+                    let mut draw = |method| densities(&shadow, &grid, &by(method), &mut scratch);
+                    let error = worst_of(&draw(None), &draw(Some(Method::Exact)));
+                    let label = format!("r {radius}, {size} at {x}, {y}");
+                    summary.add(name.to_owned(), error, 1.0, &label);
+                }
+            }
+        }
+    }
+    summary.finish();
+}
+
 /// Where a disc nearly fills a corner's circle, the density has a tip that tables do not hold.
 #[test]
 fn corners_nearly_as_round_as_the_disc_keep_their_tolerance() {

@@ -23,7 +23,7 @@ const GOLDEN: [(&str, u64); 11] = [
     ("dithered paint", 0xa426_0f57_f04f_7121),
     ("masks", 0x9fa6_92f9_d4c9_4c87),
     ("meshes", 0x11ed_48c5_de32_6538),
-    ("pictures", 0x849b_bce3_4025_ce19),
+    ("pictures", 0x0f0e_9ab9_4355_74f6),
     ("svg", 0x7d94_6a46_4d58_3c20),
 ];
 

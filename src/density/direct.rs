@@ -4,9 +4,11 @@
 //! Error: 0.05 level from rounding and from its polynomials; below r = 3 px, where a pixel is an average over a square,
 //! 0.8 level from its quadrature.
 
+use core::f64::consts::TAU;
 use core::ops::Range;
 
 use fearless_simd::Simd;
+use glam::DVec2;
 
 use super::frame::Frame;
 use super::rows::{BAND, Bands, Lattice, Points, Rows, Window, to_tiles};
@@ -29,8 +31,9 @@ pub(crate) fn fill<S: Simd>(
     sink: &mut dyn Sink,
 ) {
     let scale = grid.pixels_per_unit();
+    let has_tips = has_tips(edges, radius, averaged_side(radius * scale) / scale);
     let radius = radius * scale;
-    let sampling = Sampling::new(radius);
+    let sampling = Sampling::new(radius, has_tips);
     let (unit, points) = (sampling.unit, sampling.points());
     let bounds = outline::bounds(edges.iter());
     let reach = reach(radius);
@@ -78,6 +81,27 @@ pub(crate) fn fill<S: Simd>(
         rows.load(placed, sampling.window, &points);
         fill_rows(simd, &drawing, &points, rows, wanted, sink);
     }
+}
+
+/// Whether more than a third of a circle about as large as the disc is among the edges, to `side` of the square that pixels average
+/// over: about its centre the density has a tip.
+fn has_tips(edges: &[Edge], radius: f64, side: f64) -> bool {
+    // The turn so far about one centre. Loops may begin in such a circle.
+    let (mut center, mut turn) = (DVec2::ZERO, 0.0);
+    side > 0.0
+        && edges.iter().chain(edges).any(|edge| {
+            let Edge::Arc(arc) = edge else {
+                turn = 0.0;
+                return false;
+            };
+            if (arc.center - center).length() > side / 2.0 {
+                (center, turn) = (arc.center, 0.0);
+            }
+            if (arc.radius - radius).abs() < side {
+                turn += arc.sweep.abs();
+            }
+            turn > TAU / 3.0
+        })
 }
 
 /// What is drawn, where.

@@ -40,6 +40,10 @@ const NARROWEST: f64 = 0.01;
 /// Where pixels are averages, chords that stand for others show in rectangles thinner than this, in pixels.
 const THINNEST: f64 = 3.0;
 
+/// Where pixels are averages, rectangles as thin as the disc is wide, to so many pixels, may end in tips of the density that few heights
+/// do not hold.
+const TIP: f64 = 0.8;
+
 /// Whether averages over pixels cost less by this method, for a penumbra radius and the largest corner's, in pixels. By closed form few
 /// points of each pixel are enough from r = 0.9 px on, or one where a border is as good as straight: only small corners take them many,
 /// and two bands of heights cost as much as the 3 x 3 points from r = 1.4 px on.
@@ -62,7 +66,8 @@ pub(crate) fn suited(shadow: &Shadow, per_unit: f64) -> Option<Rounded> {
     };
     let thinnest = (rounded.max - rounded.min).min_element() * per_unit;
     let corner = rounded.radii.into_iter().fold(0.0, f64::max) * per_unit;
-    let averaged = averages_pay(radius, corner) && thinnest >= THINNEST;
+    let is_tip = radius >= LIKE_SQUARE.start && (thinnest - 2.0 * radius).abs() < TIP;
+    let averaged = averages_pay(radius, corner) && thinnest >= THINNEST && !is_tip;
     (drawn && (is_sampled || averaged)).then_some(rounded)
 }
 

@@ -29,6 +29,9 @@ const SQUARES: f64 = 0.26;
 /// From this penumbra radius in pixels on, squares are so small beside discs that differences across them lose their digits.
 const WIDE: f64 = 1.9;
 
+/// Up to this penumbra radius in pixels tips take more points.
+const TIPS: f64 = 2.4;
+
 /// Nodes and weights of the Gauss-Legendre rules on -1 to 1, the half that is not negative (Abramowitz & Stegun 1964, table
 /// 25.4).
 const GAUSS: [&[(f64, f64)]; MOST] = [
@@ -79,8 +82,9 @@ fn gauss(count: usize) -> impl Iterator<Item = (f64, f64)> {
 }
 
 impl Sampling {
-    /// For a penumbra radius in pixels.
-    pub(crate) fn new(radius: f64) -> Self {
+    /// For a penumbra radius in pixels; whether circles about as large as the disc, or halves of them, give the density tips: there few
+    /// points are up to two levels off.
+    pub(crate) fn new(radius: f64, has_tips: bool) -> Self {
         let mut sampling = Self {
             window: Window::Disc,
             unit: radius,
@@ -105,8 +109,10 @@ impl Sampling {
                 0.32..0.4 => 8,
                 0.4..0.52 => 7,
                 0.52..0.78 => 6,
+                0.78..1.14 if has_tips => 6,
                 0.78..1.14 => 5,
                 1.14..1.4 => 4,
+                1.4..TIPS if has_tips => 4,
                 1.4..1.75 => 3,
                 _ => 2,
             };
