@@ -8,14 +8,18 @@
 mod arcs;
 mod bands;
 mod chains;
+mod entries;
 mod kernels;
 mod pieces;
+mod points;
 mod seen;
+mod stroke;
 
 pub(crate) use arcs::{Power, RowCircle, circle};
 pub(crate) use bands::{BAND, Bands, to_tiles};
 pub(crate) use kernels::{Wide, half_disc, half_discs, line_at, turns, whole_disc};
 pub(crate) use pieces::{ERROR, arc_chord, each_line, sort};
+pub(crate) use points::{Line, Points, Window};
 
 use core::ops::Range;
 
@@ -25,86 +29,11 @@ use glam::DVec2;
 use super::Sink;
 use super::lanes::{LANES, lanes};
 use crate::outline::Edge;
-use arcs::RowArc;
 use chains::Passing;
-use kernels::{Ramp, RowCut, RowLine, WideArc, WideLine};
+use entries::{ALL, Entry, Maker, UNIT, cluster, density};
 use pieces::Piece;
 use seen::View;
-
-/// What a density is the average over.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Window {
-    /// The unit disc.
-    Disc,
-    /// The unit square.
-    Square,
-}
-
-impl Window {
-    /// How far from its centre it reaches along an axis.
-    fn reach(self) -> f64 {
-        match self {
-            Self::Disc => 1.0,
-            Self::Square => 0.5,
-        }
-    }
-
-    /// What lies right of its centre between y = 0 and `t`.
-    pub(crate) fn half(self, t: f64) -> f32 {
-        match self {
-            Self::Disc if t.abs() >= 1.0 => 0.25_f32.copysign(t as f32),
-            Self::Disc => half_disc(t as f32),
-            Self::Square => 0.5 * (t as f32).clamp(-0.5, 0.5),
-        }
-    }
-}
-
-/// One of the rows of points that a pixel's average is taken from.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Line {
-    /// From the pixel's centre, in the windows' unit.
-    pub(crate) offset: f64,
-    pub(crate) weight: f64,
-    /// The factor on the columns' offsets.
-    pub(crate) spread: f64,
-}
-
-/// The points that a pixel's average is taken from.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Points<'a> {
-    pub(crate) lines: &'a [Line],
-    /// Offsets in columns, and weights.
-    pub(crate) columns: &'a [(f32, f32)],
-    /// What they stand for, if there is more than one.
-    pub(crate) wide: Option<Wide>,
-}
-
-impl Points<'static> {
-    /// The pixel's centre alone.
-    pub(crate) const CENTER: Self = Self {
-        lines: &[Line {
-            offset: 0.0,
-            weight: 1.0,
-            spread: 1.0,
-        }],
-        columns: &[(0.0, 1.0)],
-        wide: None,
-    };
-}
-
-impl Points<'_> {
-    fn height(&self) -> f64 {
-        self.lines
-            .iter()
-            .map(|line| line.offset)
-            .fold(0.0, f64::max)
-    }
-
-    fn width(&self) -> f64 {
-        let farthest = self.columns.iter().map(|(offset, _)| *offset);
-        f64::from(farthest.fold(0.0, f32::max))
-    }
-}
+use stroke::{RowForm, Stroke};
 
 /// A part of a row that was computed.
 #[derive(Debug, Clone)]
@@ -119,42 +48,6 @@ enum Kind {
     /// Where its values begin.
     Values(usize),
 }
-
-#[derive(Debug, Clone, Copy)]
-enum RowForm<S: Simd> {
-    /// The signed distance of a line that passes the disc's whole height.
-    ThroughLine(Ramp<S>),
-    Line(RowLine<S>),
-    /// An arc that passes the disc's whole height.
-    ThroughArc(RowArc<S>),
-    /// An arc that runs inside between any two of its points that are inside.
-    LongArc(RowArc<S>),
-    Arc(RowArc<S>),
-    Cut(RowCut<S>),
-    /// A line or an arc that passes all that a pixel averages over.
-    WideLine(WideLine<S>),
-    WideArc(WideArc<S>),
-}
-
-/// Steps count whole units of 2^-30 of density.
-const UNIT: f64 = (1_u64 << 30) as f64;
-
-/// What one piece of the outline does to a row.
-#[derive(Debug, Clone, Copy)]
-struct Entry {
-    first: i64,
-    end: i64,
-    /// What its passing adds to all columns from `end` on.
-    step: i64,
-    piece: u32,
-    /// Which of the rows of points it is seen from, or [`ALL`] of them at once.
-    line: u32,
-    /// The window's half at the y of its two ends.
-    halves: [f32; 2],
-}
-
-/// The number of no row of points.
-const ALL: u32 = u32::MAX;
 
 /// Draws rows of one outline, from top to bottom.
 #[derive(Debug, Default)]
@@ -453,186 +346,6 @@ impl Rows {
                     );
                 }
             }
-        }
-    }
-}
-
-/// A piece over some columns.
-struct Stroke<'a, S: Simd> {
-    form: RowForm<S>,
-    /// The column of each lane, and from each vector to the next.
-    columns: f32x16<S>,
-    step: f32,
-    /// The window's half at the y of the piece's two ends.
-    halves: [f32x16<S>; 2],
-    line: &'a Line,
-    points: &'a [(f32, f32)],
-}
-
-impl<S: Simd> Stroke<'_, S> {
-    /// Adds the piece's densities to those of the columns.
-    fn add_to(&self, simd: S, values: &mut [f32]) {
-        // A closure of its own for each kernel, or they would not be one loop with it.
-        macro_rules! add {
-            ($kernel:expr) => {
-                simd.vectorize(
-                    #[inline(always)]
-                    || self.add(simd, values, $kernel),
-                )
-            };
-        }
-        match &self.form {
-            RowForm::WideLine(line) => add!(
-                #[inline(always)]
-                |columns| kernels::wide_line(simd, columns, line)
-            ),
-            RowForm::WideArc(arc) => add!(
-                #[inline(always)]
-                |columns| kernels::wide_arc(simd, columns, arc)
-            ),
-            RowForm::ThroughLine(distance) => add!(
-                #[inline(always)]
-                |columns| kernels::through_line(simd, columns, *distance)
-            ),
-            RowForm::Line(line) => add!(
-                #[inline(always)]
-                |columns| kernels::line(simd, columns, line)
-            ),
-            RowForm::ThroughArc(arc) => add!(
-                #[inline(always)]
-                |columns| arcs::through_arc(simd, columns, arc)
-            ),
-            RowForm::LongArc(arc) => add!(
-                #[inline(always)]
-                |columns| arcs::long_arc(simd, columns, arc)
-            ),
-            RowForm::Arc(arc) => add!(
-                #[inline(always)]
-                |columns| arcs::arc(simd, columns, arc)
-            ),
-            RowForm::Cut(cut) => add!(
-                #[inline(always)]
-                |columns| kernels::cut(simd, columns, cut)
-            ),
-        }
-    }
-
-    #[inline(always)]
-    fn add(&self, simd: S, values: &mut [f32], kernel: impl Fn(f32x16<S>) -> f32x16<S>) {
-        // What a piece adds counts from the middle between what it is far left and far right.
-        let middle = self.halves[0] - self.halves[1];
-        let (weight, spread) = (self.line.weight as f32, self.line.spread as f32);
-        let mut columns = self.columns;
-        if let [_] = self.points {
-            for values in values.chunks_exact_mut(LANES) {
-                let sum = f32x16::from_slice(simd, values) + (kernel(columns) + middle);
-                sum.store_slice(values);
-                columns += self.step;
-            }
-            return;
-        }
-        for values in values.chunks_exact_mut(LANES) {
-            let mut sum = middle;
-            for (offset, share) in self.points {
-                sum += kernel(columns + *offset * spread) * *share;
-            }
-            let sum = f32x16::from_slice(simd, values) + sum * weight;
-            sum.store_slice(values);
-            columns += self.step;
-        }
-    }
-}
-
-/// The columns of the entries from one on that follow each other without a gap, and the first of those after them; `reached` tells each
-/// one's first column and its end.
-#[inline(always)]
-fn cluster(start: usize, count: usize, reached: impl Fn(usize) -> [i64; 2]) -> ([i64; 2], usize) {
-    let [first, mut end] = reached(start);
-    let mut next = start + 1;
-    while next < count {
-        let [other, other_end] = reached(next);
-        if other > end {
-            break;
-        }
-        end = end.max(other_end);
-        next += 1;
-    }
-    ([first, end], next)
-}
-
-fn density(steps: i64) -> f32 {
-    ((steps as f64 / UNIT) as f32).clamp(0.0, 1.0)
-}
-
-/// What a piece adds to all on its right, seen from a row of points. Each end is rounded alone, so that what follows cancels
-/// it.
-#[inline(always)]
-fn step(line: &Line, halves: [f32; 2]) -> i64 {
-    let whole = |half: f32| (2.0 * UNIT * line.weight * f64::from(half)) as i64;
-    whole(halves[0]) - whole(halves[1])
-}
-
-/// Makes the entries of one row.
-struct Maker<'a> {
-    columns: Range<i64>,
-    lattice: &'a Lattice,
-    width: f64,
-    entries: &'a mut Vec<Entry>,
-    before: &'a mut i64,
-}
-
-impl Maker<'_> {
-    #[inline(always)]
-    fn add(&mut self, index: u32, piece: &Piece, y: f64, number: u32, line: &Line) {
-        let window = self.lattice.window;
-        let reach = window.reach();
-        if piece.low >= y + reach || piece.high <= y - reach {
-            return;
-        }
-        let halves = [piece.from.y - y, piece.to.y - y].map(|rise| window.half(rise));
-        let spread = line.spread * self.width * self.lattice.pitch;
-        let extent = piece.extent([y; 2], window);
-        let step = step(line, halves);
-        self.push(index, number, halves, step, extent, spread);
-    }
-
-    /// Adds a piece that passes all that a pixel averages over.
-    #[inline(always)]
-    fn add_wide(&mut self, index: u32, piece: &Piece, y: f64, wide: &Wide, lines: &[Line]) {
-        let falls = 0.25_f32.copysign((piece.from.y - piece.to.y) as f32);
-        let halves = [falls, -falls];
-        // As the rows of points would have it one by one, so that pieces that end in them cancel it.
-        let step = lines.iter().map(|line| step(line, halves)).sum();
-        self.push(index, ALL, halves, step, piece.wide_extent(y, wide), 0.0);
-    }
-
-    #[inline(always)]
-    fn push(
-        &mut self,
-        index: u32,
-        number: u32,
-        halves: [f32; 2],
-        step: i64,
-        [left, right]: [f64; 2],
-        spread: f64,
-    ) {
-        // One column to spare on both sides, whichever way these are rounded.
-        let column = |x: f64| ((x - self.lattice.start) * self.lattice.density) as i64;
-        let first = column(left - spread) - 1;
-        let end = column(right + spread) + 2;
-        let stride = LANES as i64;
-        let end = first + (end - first + stride - 1) / stride * stride;
-        if end <= self.columns.start {
-            *self.before += step;
-        } else if first < self.columns.end {
-            self.entries.push(Entry {
-                first,
-                end,
-                step,
-                piece: index,
-                line: number,
-                halves,
-            });
         }
     }
 }

@@ -8,10 +8,12 @@ use core::ops::Range;
 use fearless_simd::{Simd, SimdBase, f32x16};
 use glam::DVec2;
 
+use super::entries::{self, UNIT};
 use super::kernels::half_discs;
 use super::pieces::{self, Piece};
 use super::seen::View;
-use super::{Lattice, Points, STRETCH, Stroke, UNIT, Window};
+use super::stroke::Stroke;
+use super::{Lattice, Points, STRETCH, Window};
 use crate::density::Sink;
 use crate::density::lanes::LANES;
 use crate::outline::Edge;
@@ -171,7 +173,7 @@ impl Bands {
                 halves[0].store_slice(&mut ends[0]);
                 halves[1].store_slice(&mut ends[1]);
                 for (row, step) in steps.iter_mut().enumerate() {
-                    *step += super::step(line, [ends[0][row * SIDE], ends[1][row * SIDE]]);
+                    *step += entries::step(line, [ends[0][row * SIDE], ends[1][row * SIDE]]);
                 }
             }
             let [left, right] = piece.extent([top - height, bottom + height], Window::Disc);
@@ -214,7 +216,7 @@ impl Bands {
         let mut next = 0;
         while next < self.entries.len() && at < columns.end {
             let start = next;
-            let ([first, end], stop) = super::cluster(next, self.entries.len(), |at| {
+            let ([first, end], stop) = entries::cluster(next, self.entries.len(), |at| {
                 let entry = &self.entries[at];
                 [entry.first, entry.end]
             });
@@ -237,7 +239,7 @@ impl Bands {
     }
 
     fn push_constant(&mut self, columns: Range<i64>, steps: [i64; SIDE]) {
-        let densities = steps.map(super::density);
+        let densities = steps.map(entries::density);
         if !columns.is_empty() && densities.iter().any(|&density| density > 0.0) {
             self.spans.push(Span {
                 columns,

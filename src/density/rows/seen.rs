@@ -5,10 +5,11 @@ use core::f64::consts::SQRT_2;
 use fearless_simd::{Select, Simd, SimdBase, SimdFloat, f32x16};
 use glam::DVec2;
 
+use super::Window;
 use super::arcs::{ArcEnd, Power, RowArc};
 use super::kernels::{LEAST_SPAN, Ramp, RowCut, RowLine, Wide, WideArc, WideLine};
 use super::pieces::{Form, Piece};
-use super::{RowForm, Window};
+use super::stroke::RowForm;
 
 /// From where pieces are seen.
 pub(super) struct View<S: Simd> {
