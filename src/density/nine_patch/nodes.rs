@@ -56,8 +56,9 @@ pub(super) struct Row {
     places: [usize; 2],
     /// What the rectangle's height leaves of the discs, 0 to 1.
     pub(super) between: f32,
-    /// How many chords a band has.
+    /// How many chords a band has, and how many places.
     count: usize,
+    places_of_band: usize,
     y: Option<f64>,
 }
 
@@ -70,7 +71,7 @@ impl Row {
     /// What a band's discs see of a side: the width of each chord, its offset and the weight of what is inside.
     #[inline(always)]
     pub(super) fn chords(&self, band: usize, side: usize) -> impl Iterator<Item = (f32, f32, f32)> {
-        let start = band * (self.widths.len() / self.bands());
+        let start = band * self.places_of_band;
         let places = start..start + self.count;
         let offsets = &self.offsets[self.places[side]][places.clone()];
         let lists = self.widths[places.clone()].iter().zip(offsets);
@@ -109,7 +110,7 @@ impl Nodes {
         row.whole.clear();
         row.whole.resize(bands, None);
         let [tl, tr, br, bl] = shape.radii;
-        (row.count, row.y) = (count, None);
+        (row.count, row.places_of_band, row.y) = (count, filled, None);
         row.places = if tl == tr && bl == br { [0, 0] } else { [0, 1] };
     }
 
