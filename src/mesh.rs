@@ -19,6 +19,7 @@ mod gouraud;
 pub(crate) mod halving;
 mod lighten;
 mod measure;
+mod options;
 mod profile;
 mod refine;
 pub(crate) mod regions;
@@ -29,6 +30,7 @@ pub(crate) mod strips;
 pub(crate) mod tangents;
 mod thin;
 mod tilted;
+mod triangles;
 mod umbra;
 
 use core::f64::consts::FRAC_2_PI;
@@ -41,6 +43,8 @@ pub use compact::{CompactMesh, CompactVertex};
 pub use export::meshes_to_svg;
 use field::Field;
 use lighten::lighten;
+use options::Effort;
+pub use options::MeshOptions;
 pub use profile::Profile;
 use profile::{Knot, Pieces};
 use refine::Refinement;
@@ -49,188 +53,13 @@ pub use sink::LyonBuffers;
 pub use sink::{MeshBuffers, MeshIndex, MeshSink, MeshSlices};
 use strips::Strips;
 use tangents::{ProjectionCircle, tangent_loops};
+pub use triangles::{MeshQuality, MeshVertex, ShadowMesh};
 
 use crate::density::flatness;
 use crate::error::Result;
 use crate::outline::{Edge, Outline};
 use crate::scratch::Scratch;
 use crate::shadow::{Bounds, Shadow};
-use crate::tolerance::Tolerance;
-
-/// How a mesh is made.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MeshOptions {
-    tolerance: Tolerance,
-    profile: Profile,
-    max_vertices: usize,
-    effort: Effort,
-}
-
-/// How long making a mesh may take, for how few triangles.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Effort {
-    /// Halving for outlines of small detail, refinement for all others.
-    Usual,
-    Quick,
-    Few,
-}
-
-impl MeshOptions {
-    /// Within `tolerance` of the exact density, with at most 65,536 vertices, or as many as the outline's own corners need.
-    #[must_use]
-    pub fn new(tolerance: Tolerance) -> Self {
-        Self {
-            tolerance,
-            profile: Profile::Disc,
-            max_vertices: 1 << 16,
-            effort: Effort::Usual,
-        }
-    }
-
-    /// With another profile: the tolerance then holds against that profile's densities.
-    #[must_use]
-    pub fn with_profile(mut self, profile: Profile) -> Self {
-        self.profile = profile;
-        self
-    }
-
-    /// With another limit on vertices. A mesh that reaches it is not [complete](ShadowMesh::is_complete).
-    #[must_use]
-    pub fn with_max_vertices(mut self, max_vertices: usize) -> Self {
-        self.max_vertices = max_vertices;
-        self
-    }
-
-    /// With a mesh that is made as soon as may be, of up to ten times the triangles: for shadows that change in every frame,
-    /// such as a card's that rises. Otherwise time is only saved where a mesh of [few](Self::few) triangles
-    /// would take more than a hundred times as long, as it does for icons under a wide penumbra, for a sixth to a quarter of them.
-    ///
-    /// ```
-    /// use penumbral::{FillRule, Light, MeshOptions, Path, Shape, Tolerance};
-    ///
-    /// let mut path = Path::new();
-    /// path.move_to([0.0, 0.0]).line_to([300.0, 0.0]).line_to([150.0, 90.0]).close();
-    /// let flag = Shape::path(&path, FillRule::NonZero)?;
-    /// let shadow = Light::android(400.0)?.cast(&flag, 16.0, 0.0)?;
-    /// let options = MeshOptions::new(Tolerance::ONE_LEVEL);
-    /// let [few, soon] = [options.few(), options.quick()].map(|options| shadow.mesh(options));
-    /// assert!(few.indices().len() < soon.indices().len());
-    /// assert!(soon.error_levels() <= 1.0);
-    /// # Ok::<(), penumbral::Error>(())
-    /// ```
-    #[must_use]
-    pub fn quick(mut self) -> Self {
-        self.effort = Effort::Quick;
-        self
-    }
-
-    /// With a mesh of as few triangles as are found, however small the outline's detail: for shadows that are made once and kept. One takes
-    /// from tens of milliseconds to some seconds.
-    #[must_use]
-    pub fn few(mut self) -> Self {
-        self.effort = Effort::Few;
-        self
-    }
-}
-
-impl From<Tolerance> for MeshOptions {
-    fn from(tolerance: Tolerance) -> Self {
-        Self::new(tolerance)
-    }
-}
-
-/// A vertex: 12 bytes, as a GPU takes it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[repr(C)]
-pub struct MeshVertex {
-    /// x and y in scene units.
-    pub position: [f32; 2],
-    /// The density there, 0 to 1.
-    pub density: f32,
-}
-
-/// Triangles with a density at each vertex, to be interpolated linearly.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ShadowMesh {
-    vertices: Vec<MeshVertex>,
-    indices: Vec<u32>,
-    error_levels: f64,
-    complete: bool,
-}
-
-impl ShadowMesh {
-    /// The vertices. Those on the penumbra's outer edge have density 0.
-    #[must_use]
-    pub fn vertices(&self) -> &[MeshVertex] {
-        &self.vertices
-    }
-
-    /// Three indices a triangle, all turning the same way: clockwise where y points down, as on screens,
-    /// counter-clockwise where it points up.
-    #[must_use]
-    pub fn indices(&self) -> &[u32] {
-        &self.indices
-    }
-
-    /// The triangles, as their three vertices.
-    pub fn triangles(&self) -> impl Iterator<Item = [MeshVertex; 3]> {
-        self.indices
-            .chunks_exact(3)
-            .map(|corners| [0, 1, 2].map(|i: usize| self.vertices[corners[i] as usize]))
-    }
-
-    /// The largest difference from the exact density, in levels: the largest found by samples in each triangle and on the way
-    /// up from them, a few hundredths more for what they may have missed, and what rounding vertices to `f32` and
-    /// flattening curves may add. For profiles other than the disc's it holds their own difference too.
-    #[must_use]
-    pub fn error_levels(&self) -> f64 {
-        self.error_levels
-    }
-
-    /// Whether the tolerance was reached: before the limit on vertices, and in spite of rounding.
-    #[must_use]
-    pub fn is_complete(&self) -> bool {
-        self.complete
-    }
-
-    /// Triangles that were made elsewhere, to be drawn as they are.
-    #[cfg(feature = "lab")]
-    pub(crate) fn of_triangles(vertices: Vec<MeshVertex>, indices: Vec<u32>) -> Self {
-        Self {
-            vertices,
-            indices,
-            ..Self::empty()
-        }
-    }
-
-    fn filled(buffers: MeshBuffers<u32>, quality: MeshQuality) -> Self {
-        Self {
-            vertices: buffers.vertices,
-            indices: buffers.indices,
-            error_levels: quality.error_levels,
-            complete: quality.complete,
-        }
-    }
-
-    fn empty() -> Self {
-        Self {
-            vertices: Vec::new(),
-            indices: Vec::new(),
-            error_levels: 0.0,
-            complete: true,
-        }
-    }
-}
-
-/// What became of a mesh.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub struct MeshQuality {
-    /// As [`ShadowMesh::error_levels`].
-    pub error_levels: f64,
-    /// As [`ShadowMesh::is_complete`].
-    pub complete: bool,
-}
 
 impl Shadow {
     /// Triangles with a density at each vertex, within the tolerance of the exact density wherever they are interpolated
