@@ -164,15 +164,28 @@ struct Pass<'a> {
     sink: &'a mut dyn Sink,
 }
 
+/// The parts of a range before another, in it and behind it.
+fn split(all: &Range<u32>, by: &Range<u32>) -> [Range<u32>; 3] {
+    let [start, end] = [by.start, by.end].map(|end| end.clamp(all.start, all.end));
+    [all.start..start, start..end, end..all.end]
+}
+
 impl Pass<'_> {
-    /// The parts of a row's columns left of the shared pixels, among them and right of them.
-    fn parts(&self, y: u32, columns: &Range<u32>) -> [Range<u32>; 3] {
-        if !self.rows.contains(&y) {
-            return [columns.clone(), 0..0, 0..0];
-        }
-        let [start, end] =
-            [self.columns.start, self.columns.end].map(|end| end.clamp(columns.start, columns.end));
-        [columns.start..start, start..end, end..columns.end]
+    /// Rows and columns that are shared, and those that are not, in parts of which some may be empty.
+    fn parts(
+        &self,
+        rows: &Range<u32>,
+        columns: &Range<u32>,
+    ) -> ([Range<u32>; 2], [[Range<u32>; 2]; 4]) {
+        let [above, among, below] = split(rows, &self.rows);
+        let [left, shared, right] = split(columns, &self.columns);
+        let alone = [
+            [above, columns.clone()],
+            [among.clone(), left],
+            [among.clone(), right],
+            [below, columns.clone()],
+        ];
+        ([among, shared], alone)
     }
 
     /// Where among the shared pixels some columns are.
@@ -185,38 +198,39 @@ impl Pass<'_> {
 
 impl Sink for Pass<'_> {
     fn constant(&mut self, rows: Range<u32>, columns: Range<u32>, density: f32) {
-        let held = self.by.alone(density);
-        for y in rows {
-            let [left, shared, right] = self.parts(y, &columns);
-            if !shared.is_empty() {
+        let ([among, shared], alone) = self.parts(&rows, &columns);
+        if !shared.is_empty() {
+            for y in among {
                 let at = self.shared(y, &shared);
                 self.pixels.add_constant(self.level, at, density, self.by);
             }
-            for part in [left, right] {
-                if !part.is_empty() && held != 0.0 {
-                    self.sink.constant(y..y + 1, part, held);
-                }
+        }
+        let held = self.by.alone(density);
+        for [rows, columns] in alone {
+            if !rows.is_empty() && !columns.is_empty() && held != 0.0 {
+                self.sink.constant(rows, columns, held);
             }
         }
     }
 
     fn values(&mut self, rows: Range<u32>, columns: Range<u32>, densities: &[f32]) {
+        let ([among, shared], alone) = self.parts(&rows, &columns);
+        let first = columns.start;
         let of = |part: &Range<u32>| {
-            &densities[(part.start - columns.start) as usize..(part.end - columns.start) as usize]
+            &densities[(part.start - first) as usize..(part.end - first) as usize]
         };
-        for y in rows {
-            let [left, shared, right] = self.parts(y, &columns);
-            if !shared.is_empty() {
+        if !shared.is_empty() {
+            for y in among {
                 let at = self.shared(y, &shared);
                 self.pixels.add_values(self.level, at, of(&shared), self.by);
             }
-            for part in [left, right] {
-                if !part.is_empty() {
-                    let held = of(&part).iter().map(|&density| self.by.alone(density));
-                    self.row.clear();
-                    self.row.extend(held);
-                    self.sink.values(y..y + 1, part, self.row);
-                }
+        }
+        for [rows, columns] in alone {
+            if !rows.is_empty() && !columns.is_empty() {
+                let held = of(&columns).iter().map(|&density| self.by.alone(density));
+                self.row.clear();
+                self.row.extend(held);
+                self.sink.values(rows, columns, self.row);
             }
         }
     }
