@@ -125,7 +125,8 @@ pub struct Costs {
     pub sum: f64,
     /// A row of such pixels, over the penumbra radius: rows are so many a radius.
     pub sum_row: f64,
-    /// A pixel of a rounded rectangle or a circle.
+    /// A pixel of a rounded rectangle or a circle: as much as by closed form with no edge in reach, as none of 100 cards under penumbrae of 3
+    /// to 11 px took longer.
     pub rounded: f64,
     /// A pixel within reach of an edge in double precision, for each edge.
     pub exact: f64,
