@@ -497,6 +497,52 @@ fn hidden_pixels(hidden: &Hidden, scratch: &mut Scratch) -> Vec<bool> {
     seen.iter().map(|density| *density == 0.0).collect()
 }
 
+/// Asserts that of each hidden pixel shapes leave a thousandth uncovered at most.
+fn assert_covered(
+    is_hidden: &[bool],
+    shapes: &[&Shape],
+    grid: &Grid,
+    label: &str,
+    scratch: &mut Scratch,
+) {
+    let hard = Light::directional([0.0, 0.0], 0.0).unwrap();
+    let edges = hard.cast_all(shapes, 1.0, 0.0).unwrap();
+    let coverage = densities(&edges, grid, &by(Some(Method::Exact)), scratch);
+    for (coverage, _) in coverage
+        .iter()
+        .zip(is_hidden)
+        .filter(|(_, hidden)| **hidden)
+    {
+        assert!(*coverage > 1.0 - 1e-3, "{coverage}: {label}");
+    }
+}
+
+/// Over 400 cases, every other one on half pixels, or as many as `PENUMBRAL_CASES` says from seed `PENUMBRAL_SEED` on.
+#[test]
+fn hidden_pixels_are_covered() {
+    let mut scratch = Scratch::new();
+    let seed = setting("PENUMBRAL_SEED", 0);
+    for index in seed..seed + setting("PENUMBRAL_CASES", 400) {
+        let case = if index % 2 == 0 {
+            case(index)
+        } else {
+            snapped(index)
+        };
+        for shape in &case.shapes {
+            let mut hidden = Hidden::new(&case.grid);
+            hidden.add(shape, &mut scratch);
+            let is_hidden = hidden_pixels(&hidden, &mut scratch);
+            assert_covered(
+                &is_hidden,
+                &[shape],
+                &case.grid,
+                &case.label(index),
+                &mut scratch,
+            );
+        }
+    }
+}
+
 #[test]
 fn hidden_pixels_are_left_alone_and_others_keep_their_bits() {
     let (mut scratch, mut random) = (Scratch::new(), Random::new(78));
@@ -513,22 +559,7 @@ fn hidden_pixels_are_left_alone_and_others_keep_their_bits() {
         hidden.add_all(others.iter(), &mut scratch);
         let is_hidden = hidden_pixels(&hidden, &mut scratch);
         let above: Vec<&Shape> = case.shapes.iter().chain(&others).collect();
-        let edges = Light::directional([0.0, 0.0], 0.0)
-            .unwrap()
-            .cast_all(&above, 1.0, 0.0)
-            .unwrap();
-        let coverage = densities(&edges, grid, &by(Some(Method::Exact)), &mut scratch);
-        let covered = coverage
-            .iter()
-            .zip(&is_hidden)
-            .filter(|(_, hidden)| **hidden);
-        for (coverage, _) in covered {
-            assert!(
-                *coverage > 1.0 - 0.5 / 255.0,
-                "{coverage}: {}",
-                case.label(index)
-            );
-        }
+        assert_covered(&is_hidden, &above, grid, &case.label(index), &mut scratch);
         for method in [None, Some(Method::Exact), Some(FORCED[index % 3])] {
             let options = by(method);
             let seen = PixelOptions {

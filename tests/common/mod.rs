@@ -62,6 +62,27 @@ pub struct Case {
 }
 
 impl Case {
+    /// For a penumbra radius and a square of so many pixels.
+    fn new(
+        name: &'static str,
+        shapes: Vec<Shape>,
+        light: Light,
+        radius: f32,
+        side: f32,
+        per_unit: f32,
+    ) -> Self {
+        let shadow = light.cast_all(&shapes, 1.0, 0.0).unwrap();
+        let grid = Grid::new([0.0, 0.0], [side as u32; 2], per_unit).unwrap();
+        Self {
+            name,
+            shapes,
+            radius,
+            light,
+            shadow,
+            grid,
+        }
+    }
+
     pub fn label(&self, index: usize) -> String {
         let (r, per_unit) = (self.radius, self.grid.pixels_per_unit());
         format!(
@@ -381,16 +402,7 @@ pub fn case(index: usize) -> Case {
     }
     let offset = random.pick(&[[0.0, 0.0], [3.25, -2.5], [0.3, 0.7]]);
     let light = Light::directional(offset, radius / per_unit).unwrap();
-    let shadow = light.cast_all(&shapes, 1.0, 0.0).unwrap();
-    let grid = Grid::new([0.0, 0.0], [side as u32, side as u32], per_unit).unwrap();
-    Case {
-        name,
-        shapes,
-        radius,
-        light,
-        shadow,
-        grid,
-    }
+    Case::new(name, shapes, light, radius, side, per_unit)
 }
 
 /// Casters drawn on whole and half pixels, under a penumbra radius of as many: discs touch corners and vertices, and pixels' middles lie
@@ -486,16 +498,7 @@ pub fn snapped(index: usize) -> Case {
     };
     let radius = halves(random, 6, 24) * random.pick(&[1.0, 1.0, 1.0, 0.25, 2.0]);
     let light = Light::directional([0.0, 0.0], radius).unwrap();
-    let shadow = light.cast_all(&shapes, 1.0, 0.0).unwrap();
-    let grid = Grid::new([0.0, 0.0], [SIDE as u32; 2], 1.0).unwrap();
-    Case {
-        name,
-        shapes,
-        radius,
-        light,
-        shadow,
-        grid,
-    }
+    Case::new(name, shapes, light, radius, SIDE, 1.0)
 }
 
 pub fn densities(
