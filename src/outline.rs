@@ -258,10 +258,7 @@ impl Outline {
         self.loops.retain(|edges| !edges.is_empty());
         if self.area() < 0.0 {
             for edges in &mut self.loops {
-                edges.reverse();
-                for edge in edges.iter_mut() {
-                    *edge = edge.reversed();
-                }
+                reverse(edges);
             }
         }
         let key = |edge: &Edge| (edge.from().x, edge.from().y);
@@ -394,6 +391,14 @@ pub(crate) fn area<'a>(edges: impl Iterator<Item = &'a Edge> + Clone) -> f64 {
     // Far from the origin the triangles' areas would cancel.
     let origin = edges.clone().next().map_or(DVec2::ZERO, Edge::from);
     edges.map(|edge| edge.double_area(origin)).sum::<f64>() / 2.0
+}
+
+/// Edges gone the other way.
+pub(crate) fn reverse(edges: &mut [Edge]) {
+    edges.reverse();
+    for edge in edges {
+        *edge = edge.reversed();
+    }
 }
 
 /// The smallest box that holds edges.

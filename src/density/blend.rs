@@ -108,9 +108,7 @@ impl Ink {
             brush.blend(block, &coat);
         }
         if !count.is_multiple_of(PIXELS) {
-            let last = count % PIXELS;
-            let coat = brush.coat(brush.within([density; PIXELS], last));
-            brush.blend_rest(rest, last, &coat);
+            brush.blend_last(rest, count % PIXELS, [density; PIXELS]);
         }
     }
 
@@ -132,8 +130,7 @@ impl Ink {
         }
         if !last.is_empty() {
             let part = last_block(densities, count, last.len());
-            let coat = brush.coat(brush.within(part, last.len()));
-            brush.blend_rest(rest, last.len(), &coat);
+            brush.blend_last(rest, last.len(), part);
         }
     }
 
@@ -153,8 +150,7 @@ impl Ink {
         while left > 0 {
             let count = left.min(COATS * PIXELS);
             let (parts, last) = densities[..count].as_chunks::<PIXELS>();
-            let rest = brush.within(last_block(densities, count, last.len()), last.len());
-            let rest = brush.coat(rest);
+            let rest = brush.last_coat(last_block(densities, count, last.len()), last.len());
             let mut coats = [rest; COATS];
             let coats = &mut coats[..parts.len()];
             for (coat, part) in coats.iter_mut().zip(parts) {
@@ -202,8 +198,7 @@ impl Ink {
                     part
                 }
             };
-            let coat = brush.coat(brush.within(densities(&part), last.len()));
-            brush.blend_rest(rest, last.len(), &coat);
+            brush.blend_last(rest, last.len(), densities(&part));
         }
     }
 }
@@ -263,13 +258,13 @@ impl<S: Simd> Brush<S> {
         }
     }
 
-    /// The first `count` of a block's densities, and 0 for other pixels, which leaves them as they are.
+    /// A coat of the first `count` of a block's densities, which leaves other pixels as they are.
     #[inline(always)]
-    fn within(&self, densities: [f32; PIXELS], count: usize) -> f32x8<S> {
+    fn last_coat(&self, densities: [f32; PIXELS], count: usize) -> Coat<S> {
         let lanes = f32x8::from_slice(self.simd, &NUMBERS[..PIXELS]);
         let within = lanes.simd_lt(f32x8::splat(self.simd, count as f32));
         let densities = f32x8::simd_from(self.simd, densities);
-        within.select(densities, f32x8::splat(self.simd, 0.0))
+        self.coat(within.select(densities, f32x8::splat(self.simd, 0.0)))
     }
 
     #[inline(always)]
@@ -291,6 +286,12 @@ impl<S: Simd> Brush<S> {
         let green_alpha = over(self.simd, pixels & UPPER, coat.opacity, coat.green_alpha) & UPPER;
         let mixed: u8x32<S> = (red_blue | green_alpha).bitcast();
         *block = mixed.into();
+    }
+
+    /// Blends the first `count` of a block's densities, where there may be no other pixels.
+    #[inline(always)]
+    fn blend_last(&self, rest: &mut [u8], count: usize, densities: [f32; PIXELS]) {
+        self.blend_rest(rest, count, &self.last_coat(densities, count));
     }
 
     /// Blends a coat that leaves all but the first `count` pixels as they are, where there may be no others.

@@ -31,9 +31,9 @@ pub(crate) fn fill<S: Simd>(
     sink: &mut dyn Sink,
 ) {
     let scale = grid.pixels_per_unit();
-    let has_tips = has_tips(edges, radius, averaged_side(radius * scale) / scale);
+    let has_tips = || has_tips(edges, radius, averaged_side(radius * scale) / scale);
+    let sampling = Sampling::new(radius * scale, has_tips);
     let radius = radius * scale;
-    let sampling = Sampling::new(radius, has_tips);
     let (unit, points) = (sampling.unit, sampling.points());
     let bounds = outline::bounds(edges.iter());
     let reach = reach(radius);
@@ -88,20 +88,19 @@ pub(crate) fn fill<S: Simd>(
 fn has_tips(edges: &[Edge], radius: f64, side: f64) -> bool {
     // The turn so far about one centre. Loops may begin in such a circle.
     let (mut center, mut turn) = (DVec2::ZERO, 0.0);
-    side > 0.0
-        && edges.iter().chain(edges).any(|edge| {
-            let Edge::Arc(arc) = edge else {
-                turn = 0.0;
-                return false;
-            };
-            if (arc.center - center).length() > side / 2.0 {
-                (center, turn) = (arc.center, 0.0);
-            }
-            if (arc.radius - radius).abs() < side {
-                turn += arc.sweep.abs();
-            }
-            turn > TAU / 3.0
-        })
+    edges.iter().chain(edges).any(|edge| {
+        let Edge::Arc(arc) = edge else {
+            turn = 0.0;
+            return false;
+        };
+        if (arc.center - center).length() > side / 2.0 {
+            (center, turn) = (arc.center, 0.0);
+        }
+        if (arc.radius - radius).abs() < side {
+            turn += arc.sweep.abs();
+        }
+        turn > TAU / 3.0
+    })
 }
 
 /// What is drawn, where.

@@ -12,7 +12,7 @@ use super::frame::Frame;
 use super::{EXACT_SHARE, Sink, at_point, averaged_side, flatness, quadrature};
 use crate::grid::Grid;
 use crate::hidden::Hidden;
-use crate::outline::{Edge, clip_to_box};
+use crate::outline::{self, Edge, clip_to_box};
 use crate::scratch::Scratch;
 use crate::shadow::Shadow;
 
@@ -164,13 +164,7 @@ impl Painter<'_> {
 
 /// The area inside edges cut to a pixel.
 fn covered(edges: &[Edge]) -> f64 {
-    let origin = edges.first().map_or(DVec2::ZERO, Edge::from);
-    let area = edges
-        .iter()
-        .map(|edge| edge.double_area(origin))
-        .sum::<f64>()
-        / 2.0;
-    area.clamp(0.0, 1.0)
+    outline::area(edges.iter()).clamp(0.0, 1.0)
 }
 
 /// Whether edges that all run along the box they were cut to wind round it, or are nothing.

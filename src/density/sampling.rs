@@ -84,7 +84,7 @@ fn gauss(count: usize) -> impl Iterator<Item = (f64, f64)> {
 impl Sampling {
     /// For a penumbra radius in pixels; whether circles about as large as the disc, or halves of them, give the density tips: there few
     /// points are up to two levels off.
-    pub(crate) fn new(radius: f64, has_tips: bool) -> Self {
+    pub(crate) fn new(radius: f64, has_tips: impl Fn() -> bool) -> Self {
         let mut sampling = Self {
             window: Window::Disc,
             unit: radius,
@@ -109,10 +109,10 @@ impl Sampling {
                 0.32..0.4 => 8,
                 0.4..0.52 => 7,
                 0.52..0.78 => 6,
-                0.78..1.14 if has_tips => 6,
+                0.78..1.14 if has_tips() => 6,
                 0.78..1.14 => 5,
                 1.14..1.4 => 4,
-                1.4..TIPS if has_tips => 4,
+                1.4..TIPS if has_tips() => 4,
                 1.4..1.75 => 3,
                 _ => 2,
             };

@@ -2,11 +2,9 @@
 
 use std::borrow::Cow;
 
-use glam::DVec2;
-
 use super::{Shadow, unite};
 use crate::density;
-use crate::outline::{Edge, Fineness, Outline};
+use crate::outline::{self, Edge, Fineness, Outline};
 use crate::path::Contour;
 use crate::shape::{Cover, Shape};
 
@@ -109,23 +107,15 @@ impl Shadow {
 
 /// Turns the edges of loops round if what they enclose lies on their right.
 fn turn_left(edges: &mut [Edge]) {
-    // Far from the origin the areas would cancel.
-    let origin = edges.first().map_or(DVec2::ZERO, Edge::from);
-    if edges
-        .iter()
-        .map(|edge| edge.double_area(origin))
-        .sum::<f64>()
-        < 0.0
-    {
-        edges.reverse();
-        for edge in edges {
-            *edge = edge.reversed();
-        }
+    if outline::area(edges.iter()) < 0.0 {
+        outline::reverse(edges);
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec2;
+
     use super::*;
     use crate::light::Light;
     use crate::path::{FillRule, Path};
@@ -180,15 +170,6 @@ mod tests {
         edges
     }
 
-    fn area(edges: &[Edge]) -> f64 {
-        let origin = edges[0].from();
-        edges
-            .iter()
-            .map(|edge| edge.double_area(origin))
-            .sum::<f64>()
-            / 2.0
-    }
-
     #[test]
     fn few_lines_draw_the_same_densities() {
         const SIDE: u32 = 20;
@@ -215,7 +196,7 @@ mod tests {
                 assert!(worst < 0.1, "{name}, r {radius}: {worst} levels");
                 assert!(lines < before);
                 let fine = shadow.outline(1e-3).area();
-                assert!((area(&edges) / fine - 1.0).abs() < 2e-5);
+                assert!((outline::area(edges.iter()) / fine - 1.0).abs() < 2e-5);
             }
         }
     }
@@ -233,7 +214,7 @@ mod tests {
             edges.clear();
             shadow.edges_into(0.5, 1.0, &mut edges);
             assert_eq!((&edges, edges.capacity()), (&before, capacity));
-            area(&edges)
+            outline::area(edges.iter())
         });
         assert!(areas[0] > 0.0 && (areas[0] - areas[1]).abs() < 1e-6);
     }
