@@ -3,8 +3,8 @@
 use core::ops::Range;
 
 use fearless_simd::{
-    Bytes, Level, Select, Simd, SimdBase, SimdFloat, SimdFrom, dispatch, f32x8, i32x8, u8x32,
-    u16x16, u32x8,
+    Bytes, Level, Select, Simd, SimdBase, SimdFloat, SimdFrom, SimdInt, SimdSplit, dispatch,
+    f32x16, i32x16, u16x16, u16x32, u32x16,
 };
 
 use super::Sink;
@@ -32,7 +32,7 @@ pub(crate) struct Ink {
 }
 
 /// Pixels that are blended at once, and their bytes.
-const PIXELS: usize = 8;
+const PIXELS: usize = 16;
 const BLOCK: usize = 4 * PIXELS;
 
 /// The upper byte of 16 bits.
@@ -102,10 +102,10 @@ impl Ink {
         (layout, y, first): (&Layout, u32, u32),
     ) {
         let brush = Brush::new(simd, self, &thresholds(layout, y, first));
-        let coat = brush.coat(f32x8::splat(simd, density));
+        let coat = brush.coat(f32x16::splat(simd, density));
         let (blocks, rest) = pixels.split_at_mut(4 * (count - count % PIXELS));
         for block in blocks.as_chunks_mut::<BLOCK>().0 {
-            brush.blend(block, &coat);
+            core::hint::black_box(&coat).blend(simd, block);
         }
         if !count.is_multiple_of(PIXELS) {
             brush.blend_last(rest, count % PIXELS, [density; PIXELS]);
@@ -126,7 +126,9 @@ impl Ink {
         let (parts, last) = densities[..count].as_chunks::<PIXELS>();
         let (blocks, rest) = pixels.split_at_mut(BLOCK * parts.len());
         for (block, part) in blocks.as_chunks_mut::<BLOCK>().0.iter_mut().zip(parts) {
-            brush.blend(block, &brush.coat(f32x8::simd_from(simd, *part)));
+            brush
+                .coat(f32x16::simd_from(simd, *part))
+                .blend(simd, block);
         }
         if !last.is_empty() {
             let part = last_block(densities, count, last.len());
@@ -154,13 +156,13 @@ impl Ink {
             let mut coats = [rest; COATS];
             let coats = &mut coats[..parts.len()];
             for (coat, part) in coats.iter_mut().zip(parts) {
-                *coat = brush.coat(f32x8::simd_from(simd, *part));
+                *coat = brush.coat(f32x16::simd_from(simd, *part));
             }
             for row in 0..rows {
                 let pixels = &mut pixels[4 * row * layout.stride..];
                 let (blocks, end) = pixels.split_at_mut(BLOCK * coats.len());
                 for (block, coat) in blocks.as_chunks_mut::<BLOCK>().0.iter_mut().zip(&*coats) {
-                    brush.blend(block, coat);
+                    coat.blend(simd, block);
                 }
                 if !last.is_empty() {
                     brush.blend_rest(end, last.len(), &rest);
@@ -184,13 +186,15 @@ impl Ink {
         let (parts, last) = mask.as_chunks::<PIXELS>();
         let (blocks, rest) = pixels.split_at_mut(BLOCK * parts.len());
         for (block, part) in blocks.as_chunks_mut::<BLOCK>().0.iter_mut().zip(parts) {
-            brush.blend(block, &brush.coat(f32x8::simd_from(simd, densities(part))));
+            brush
+                .coat(f32x16::simd_from(simd, densities(part)))
+                .blend(simd, block);
         }
         if !last.is_empty() {
             let part = match mask.last_chunk() {
                 // Shifted down to the block's beginning.
                 Some(end) => {
-                    (u64::from_le_bytes(*end) >> (8 * (PIXELS - last.len()))).to_le_bytes()
+                    (u128::from_le_bytes(*end) >> (8 * (PIXELS - last.len()))).to_le_bytes()
                 }
                 None => {
                     let mut part = [0; PIXELS];
@@ -223,24 +227,24 @@ fn densities(coverage: &[u8; PIXELS]) -> [f32; PIXELS] {
 struct Brush<S: Simd> {
     simd: S,
     strength: f32,
-    red_blue: u16x16<S>,
-    green_alpha: u16x16<S>,
-    thresholds: u16x16<S>,
+    red_blue: u16x32<S>,
+    green_alpha: u16x32<S>,
+    thresholds: u16x32<S>,
 }
 
-/// Paint on a block's pixels.
+/// Paint on pixels, two of whose channels each of its vectors holds.
 #[derive(Clone, Copy)]
-struct Coat<S: Simd> {
+struct Coat<V> {
     /// In 65535ths.
-    opacity: u16x16<S>,
+    opacity: V,
     /// What paint and rounding add to both pairs of channels, in 256ths: with what is left of a channel these are 255 upper bytes and
     /// 1 at most, a threshold is 254 lower ones.
-    red_blue: u16x16<S>,
-    green_alpha: u16x16<S>,
+    red_blue: V,
+    green_alpha: V,
 }
 
 /// Blocks that are painted at once on rows that are alike.
-const COATS: usize = 16;
+const COATS: usize = 8;
 
 impl<S: Simd> Brush<S> {
     #[inline(always)]
@@ -252,40 +256,32 @@ impl<S: Simd> Brush<S> {
         Self {
             simd,
             strength: ink.strength,
-            red_blue: u32x8::splat(simd, ink.red_blue).bitcast(),
-            green_alpha: u32x8::splat(simd, ink.green_alpha).bitcast(),
-            thresholds: u32x8::simd_from(simd, twice).bitcast(),
+            red_blue: u32x16::splat(simd, ink.red_blue).bitcast(),
+            green_alpha: u32x16::splat(simd, ink.green_alpha).bitcast(),
+            thresholds: u32x16::simd_from(simd, twice).bitcast(),
         }
     }
 
     /// A coat of the first `count` of a block's densities, which leaves other pixels as they are.
     #[inline(always)]
-    fn last_coat(&self, densities: [f32; PIXELS], count: usize) -> Coat<S> {
-        let lanes = f32x8::from_slice(self.simd, &NUMBERS[..PIXELS]);
-        let within = lanes.simd_lt(f32x8::splat(self.simd, count as f32));
-        let densities = f32x8::simd_from(self.simd, densities);
-        self.coat(within.select(densities, f32x8::splat(self.simd, 0.0)))
+    fn last_coat(&self, densities: [f32; PIXELS], count: usize) -> Coat<u16x32<S>> {
+        let lanes = f32x16::from_slice(self.simd, &NUMBERS);
+        let within = lanes.simd_lt(f32x16::splat(self.simd, count as f32));
+        let densities = f32x16::simd_from(self.simd, densities);
+        self.coat(within.select(densities, f32x16::splat(self.simd, 0.0)))
     }
 
     #[inline(always)]
-    fn coat(&self, densities: f32x8<S>) -> Coat<S> {
-        let opacity: i32x8<S> = (densities * self.strength + 0.5).to_int();
-        let opacity: u32x8<S> = opacity.bitcast();
+    fn coat(&self, densities: f32x16<S>) -> Coat<u16x32<S>> {
+        let brush = core::hint::black_box(self);
+        let opacity: i32x16<S> = (densities * self.strength + 0.5).to_int();
+        let opacity: u32x16<S> = opacity.bitcast();
         let opacity = (opacity | (opacity << 16)).bitcast();
         Coat {
             opacity,
-            red_blue: high(self.simd, self.red_blue, opacity) + self.thresholds,
-            green_alpha: high(self.simd, self.green_alpha, opacity) + self.thresholds,
+            red_blue: high(brush.red_blue, opacity) + self.thresholds,
+            green_alpha: high(brush.green_alpha, opacity) + self.thresholds,
         }
-    }
-
-    #[inline(always)]
-    fn blend(&self, block: &mut [u8; BLOCK], coat: &Coat<S>) {
-        let pixels: u16x16<S> = u8x32::simd_from(self.simd, *block).bitcast();
-        let red_blue = over(self.simd, pixels << 8, coat.opacity, coat.red_blue) >> 8;
-        let green_alpha = over(self.simd, pixels & UPPER, coat.opacity, coat.green_alpha) & UPPER;
-        let mixed: u8x32<S> = (red_blue | green_alpha).bitcast();
-        *block = mixed.into();
     }
 
     /// Blends the first `count` of a block's densities, where there may be no other pixels.
@@ -296,31 +292,70 @@ impl<S: Simd> Brush<S> {
 
     /// Blends a coat that leaves all but the first `count` pixels as they are, where there may be no others.
     #[inline(always)]
-    fn blend_rest(&self, rest: &mut [u8], count: usize, coat: &Coat<S>) {
-        if let Some(block) = rest.first_chunk_mut() {
-            self.blend(block, coat);
+    fn blend_rest(&self, rest: &mut [u8], count: usize, coat: &Coat<u16x32<S>>) {
+        if count > PIXELS / 2 {
+            coat.blend_some::<S, BLOCK>(self.simd, rest, count);
+        } else {
+            let half = coat.half();
+            half.blend_some::<S, { BLOCK / 2 }>(self.simd, rest, count);
+        }
+    }
+}
+
+impl<S: Simd> Coat<u16x32<S>> {
+    /// The coat of the first half of the pixels.
+    #[inline(always)]
+    fn half(&self) -> Coat<u16x16<S>> {
+        Coat {
+            opacity: self.opacity.split().0,
+            red_blue: self.red_blue.split().0,
+            green_alpha: self.green_alpha.split().0,
+        }
+    }
+}
+
+impl<V> Coat<V> {
+    /// Blends the coat onto as many pixels as it has.
+    #[inline(always)]
+    fn blend<S: Simd>(&self, simd: S, block: &mut [u8])
+    where
+        V: SimdInt<S, Element = u16>,
+    {
+        let pixels = V::from_bytes(V::ByteVector::from_slice(simd, block));
+        let red_blue = over(pixels << 8, self.opacity, self.red_blue) >> 8;
+        let green_alpha = over(pixels & UPPER, self.opacity, self.green_alpha) & UPPER;
+        (red_blue | green_alpha).to_bytes().store_slice(block);
+    }
+
+    /// Blends a coat that leaves all but the first `count` pixels as they are, where there may be no others.
+    #[inline(always)]
+    fn blend_some<S: Simd, const SIZE: usize>(&self, simd: S, rest: &mut [u8], count: usize)
+    where
+        V: SimdInt<S, Element = u16>,
+    {
+        if let Some(block) = rest.first_chunk_mut::<SIZE>() {
+            self.blend(simd, block);
             return;
         }
-        let (mut block, rest) = ([0; BLOCK], &mut rest[..4 * count]);
+        let (mut block, rest) = ([0; SIZE], &mut rest[..4 * count]);
         block[..rest.len()].copy_from_slice(rest);
-        self.blend(&mut block, coat);
+        self.blend(simd, &mut block);
         rest.copy_from_slice(&block[..rest.len()]);
     }
 }
 
 /// Two channels under paint, to be cut off to their upper bytes.
 #[inline(always)]
-fn over<S: Simd>(simd: S, below: u16x16<S>, opacity: u16x16<S>, paint: u16x16<S>) -> u16x16<S> {
-    below - high(simd, below, opacity) + paint
+fn over<S: Simd, V: SimdInt<S, Element = u16>>(below: V, opacity: V, paint: V) -> V {
+    below - high(below, opacity) + paint
 }
 
 /// The upper half of each product.
 #[inline(always)]
-fn high<S: Simd>(simd: S, a: u16x16<S>, b: u16x16<S>) -> u16x16<S> {
-    let (a, b): ([u16; 16], [u16; 16]) = (a.into(), b.into());
-    let mut high = [0; 16];
-    for lane in 0..16 {
+fn high<S: Simd, V: SimdInt<S, Element = u16>>(a: V, b: V) -> V {
+    let mut high = a;
+    for lane in 0..V::LEN {
         high[lane] = ((u32::from(a[lane]) * u32::from(b[lane])) >> 16) as u16;
     }
-    u16x16::simd_from(simd, high)
+    high
 }
