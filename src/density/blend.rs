@@ -51,26 +51,24 @@ impl Sink for Rgba8<'_> {
     fn constant(&mut self, rows: Range<u32>, columns: Range<u32>, density: f32) {
         let (layout, ink, first) = (&self.layout, &self.ink, columns.start);
         let count = columns.len();
-        dispatch!(self.level, simd => for y in rows {
+        dispatch!(self.level, simd => for rows in layout.alike(rows) {
+            let y = rows.start;
             let pixels = from(self.pixels, layout, y, first);
-            ink.blend_constant(simd, pixels, count, density, (layout, y, first));
+            ink.blend_constant(simd, pixels, (rows.len(), count), density, (layout, y, first));
         });
     }
 
     fn values(&mut self, rows: Range<u32>, columns: Range<u32>, densities: &[f32]) {
         let (layout, ink, first) = (&self.layout, &self.ink, columns.start);
         let count = columns.len();
-        if rows.len() > 1 && layout.dither.is_none() {
+        dispatch!(self.level, simd => for rows in layout.alike(rows) {
             let (y, rows) = (rows.start, rows.len());
             let pixels = from(self.pixels, layout, y, first);
-            dispatch!(self.level, simd => {
-                ink.blend_rows(simd, pixels, rows, count, densities, (layout, y, first));
-            });
-            return;
-        }
-        dispatch!(self.level, simd => for y in rows {
-            let pixels = from(self.pixels, layout, y, first);
-            ink.blend_values(simd, pixels, count, densities, (layout, y, first));
+            if rows > 1 {
+                ink.blend_rows(simd, pixels, (rows, count), densities, (layout, y, first));
+            } else {
+                ink.blend_values(simd, pixels, count, densities, (layout, y, first));
+            }
         });
     }
 }
@@ -91,24 +89,29 @@ impl Ink {
         }
     }
 
-    /// Blends one density onto the first `count` pixels, which begin at a row and column of the layout.
+    /// Blends one density onto the first `count` pixels of each of some rows which round alike and begin at a row and column of the layout.
     #[inline(always)]
     fn blend_constant<S: Simd>(
         &self,
         simd: S,
         pixels: &mut [u8],
-        count: usize,
+        (rows, count): (usize, usize),
         density: f32,
         (layout, y, first): (&Layout, u32, u32),
     ) {
         let brush = Brush::new(simd, self, &thresholds(layout, y, first));
         let coat = brush.coat(f32x16::splat(simd, density));
-        let (blocks, rest) = pixels.split_at_mut(4 * (count - count % PIXELS));
-        for block in blocks.as_chunks_mut::<BLOCK>().0 {
-            core::hint::black_box(&coat).blend(simd, block);
-        }
-        if !count.is_multiple_of(PIXELS) {
-            brush.blend_last(rest, count % PIXELS, [density; PIXELS]);
+        let left = count % PIXELS;
+        let rest = (left > 0).then(|| brush.last_coat([density; PIXELS], left));
+        for row in 0..rows {
+            let pixels = &mut pixels[4 * row * layout.stride..];
+            let (blocks, end) = pixels.split_at_mut(4 * (count - left));
+            for block in blocks.as_chunks_mut::<BLOCK>().0 {
+                core::hint::black_box(&coat).blend(simd, block);
+            }
+            if let Some(rest) = &rest {
+                brush.blend_rest(end, left, rest);
+            }
         }
     }
 
@@ -142,8 +145,7 @@ impl Ink {
         &self,
         simd: S,
         mut pixels: &mut [u8],
-        rows: usize,
-        count: usize,
+        (rows, count): (usize, usize),
         mut densities: &[f32],
         (layout, y, first): (&Layout, u32, u32),
     ) {

@@ -1,11 +1,30 @@
 //! The last rounding to 8 bits: to the nearest, or spread by an ordered pattern.
 
+use core::ops::Range;
+
 /// Where rows are in a buffer, and which pixel of the dithering pattern the first one is.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Layout {
     pub(crate) stride: usize,
     /// The pattern's column and row, or none to round to the nearest.
     pub(crate) dither: Option<[u32; 2]>,
+}
+
+impl Layout {
+    /// Those of some rows that round alike, one group after another.
+    #[inline(always)]
+    pub(super) fn alike(&self, mut rows: Range<u32>) -> impl Iterator<Item = Range<u32>> {
+        core::iter::from_fn(move || {
+            let first = rows.start;
+            let end = if self.dither.is_none() {
+                rows.end
+            } else {
+                first + 1
+            };
+            rows.start = end;
+            (first < rows.end).then_some(first..end)
+        })
+    }
 }
 
 /// The side of the dithering pattern, in pixels.
