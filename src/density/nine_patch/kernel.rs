@@ -7,6 +7,8 @@
 use core::f64::consts::PI;
 use core::ops::Range;
 
+use fearless_simd::{Simd, SimdFrom, f32x16};
+
 use crate::density::lanes::LANES;
 use crate::density::rows::Window;
 use crate::density::{averaged_side, reach};
@@ -18,18 +20,28 @@ pub(super) struct Kernel {
     /// The square's side, and how many bands it is taken in.
     pub(super) side: f64,
     bands: usize,
-    /// At heights from a band's middle to its end.
-    slices: Vec<Slice>,
+    slices: Slices,
 }
 
-/// A band's average at a height, over its reach.
-#[derive(Debug, Default, Clone, Copy)]
-struct Slice {
-    /// The chord, and how much of the average lies on a pixel of it.
-    width: f32,
-    weight: f32,
+/// A band's average at heights from its middle to its end, and nothing behind that.
+#[derive(Debug)]
+struct Slices {
+    /// The chords, and how much of the average lies on a pixel of each.
+    widths: [f32; SLICES],
+    weights: [f32; SLICES],
     /// How much lies above.
-    above: f32,
+    above: [f32; SLICES],
+}
+
+impl Default for Slices {
+    fn default() -> Self {
+        let none = [0.0; SLICES];
+        Self {
+            widths: none,
+            weights: none,
+            above: none,
+        }
+    }
 }
 
 /// The penumbra radii, in pixels, at which the disc is neither much smaller than the square nor much larger: there one band is worst.
@@ -52,12 +64,14 @@ const SHARE: f64 = 0.8;
 /// Intervals from a band's middle to its end.
 const INTERVALS: usize = 32;
 
+/// Room for their ends and for what is behind the last one: a power of two, so that a number is in it whose upper bits are cut off.
+const SLICES: usize = 64;
+
 impl Kernel {
     /// For a penumbra radius in pixels.
     pub(super) fn set(&mut self, radius: f64, levels: f64) {
         self.radius = radius;
         self.side = averaged_side(radius);
-        self.slices.clear();
         if !self.is_averaged() {
             self.bands = 1;
             return;
@@ -70,13 +84,10 @@ impl Kernel {
             let [lower, upper] = [height - half, height + half].map(|rise| self.moments(rise));
             let [area, cube, above] = [0, 1, 2].map(|moment| upper[moment] - lower[moment]);
             let half_width = (cube / area.max(1e-9)).max(0.0).sqrt().max(SHORTEST);
-            self.slices.push(Slice {
-                width: 2.0 * half_width as f32,
-                weight: (area / half_width) as f32,
-                above: (above / all) as f32,
-            });
+            self.slices.widths[interval] = 2.0 * half_width as f32;
+            self.slices.weights[interval] = (area / half_width) as f32;
+            self.slices.above[interval] = (above / all) as f32;
         }
-        self.slices.push(Slice::default());
     }
 
     pub(super) fn is_averaged(&self) -> bool {
@@ -103,13 +114,13 @@ impl Kernel {
     }
 
     /// How much of what a band averages over lies above a height, over the reach, at which that is the disc's `half`.
-    pub(super) fn above(&self, sine: f64, half: f64) -> f64 {
+    pub(super) fn above(&self, sine: f32, half: f32) -> f32 {
         if !self.is_averaged() {
             return 0.5 + 2.0 * half;
         }
-        let (slice, next, share) = self.slice(sine as f32);
-        let above = slice.above + (next.above - slice.above) * share;
-        0.5 + f64::from(above).copysign(sine)
+        let (slice, share) = slice(sine);
+        let [above, next] = [0, 1].map(|more| self.slices.above[(slice + more) % SLICES]);
+        0.5 + (above + (next - above) * share).copysign(sine)
     }
 
     /// How much of what a pixel averages over lies between two heights, in pixels.
@@ -134,28 +145,23 @@ impl Kernel {
     }
 
     /// The chords at heights over the reach, and how much of the average lies on a pixel of each.
-    // Once: where it was inlined, compilers took minutes.
-    #[inline(never)]
-    pub(super) fn chords(&self, heights: &[f32; LANES]) -> [[f32; LANES]; 2] {
-        let (mut widths, mut weights) = ([0.0; LANES], [0.0; LANES]);
-        for (lane, height) in heights.iter().enumerate() {
-            let (slice, next, share) = self.slice(*height);
-            widths[lane] = slice.width + (next.width - slice.width) * share;
-            weights[lane] = slice.weight + (next.weight - slice.weight) * share;
+    #[inline(always)]
+    pub(super) fn chords<S: Simd>(&self, simd: S, heights: f32x16<S>) -> [f32x16<S>; 2] {
+        let mut found = [[0.0; LANES]; 2];
+        for lane in 0..LANES {
+            let (slice, share) = slice(heights[lane]);
+            for (found, list) in found
+                .iter_mut()
+                .zip([&self.slices.widths, &self.slices.weights])
+            {
+                let (here, next) = (list[slice % SLICES], list[(slice + 1) % SLICES]);
+                found[lane] = here + (next - here) * share;
+            }
         }
-        [widths, weights]
-    }
-
-    /// The slices about a height over the reach, and how far from the first to the second it is.
-    fn slice(&self, height: f32) -> (Slice, Slice, f32) {
-        let place = height.abs().min(1.0) * INTERVALS as f32;
-        let slice = place as usize;
-        // The fraction itself is a call where a level has no instruction for it.
-        (
-            self.slices[slice],
-            self.slices[slice + 1],
-            place - slice as f32,
-        )
+        [
+            f32x16::simd_from(simd, found[0]),
+            f32x16::simd_from(simd, found[1]),
+        ]
     }
 
     /// The integrals up to a height from the disc's middle of half a chord, of its cube, and of the first of these integrals.
@@ -170,6 +176,15 @@ impl Kernel {
         let above = (square * (rise * angle + half) - half * half * half / 3.0) / 2.0;
         [area, cube, above + beyond * area]
     }
+}
+
+/// The slice before a height over the reach, and how far from there to the next one it is.
+#[inline(always)]
+fn slice(height: f32) -> (usize, f32) {
+    let place = height.abs().min(1.0) * INTERVALS as f32;
+    let slice = place as u32;
+    // The fraction itself is a call where a level has no instruction for it.
+    (slice as usize, place - slice as f32)
 }
 
 /// The least half width of a chord, in pixels.

@@ -6,14 +6,14 @@
 //! wrong by the square of their distance there as well. What a level edge covers of the whole disc is closed form, and the
 //! sum is scaled to it.
 
-use core::f64::consts::TAU;
+use core::f32::consts::TAU;
 
 use fearless_simd::{Simd, SimdBase, SimdFloat, f32x16};
 
 use super::kernel::Kernel;
 use crate::density::lanes::LANES;
 use crate::density::rounded::Rounded;
-use crate::density::rows::Window;
+use crate::density::rows::half_discs;
 
 /// Heights of a disc for a tolerance of one level: with 16 the sum is wrong by at most 0.4 of it for corners up to
 /// twice the disc's size. Measured on corners of 0 to 200 radii, no bound.
@@ -44,12 +44,11 @@ pub(super) struct Nodes {
 /// Heights of one row's discs.
 #[derive(Debug, Default)]
 pub(super) struct Row {
-    /// How far below a band's middle the chords are and their widths, in pixels, and what each pixel of them weighs.
+    /// How far below a band's middle the chords are and their widths, in pixels, and what each pixel of them weighs, up to the band's scale.
     heights: Vec<f32>,
     widths: Vec<f32>,
     weights: Vec<f32>,
-    /// What the rectangle's height leaves of each band's discs, 0 to 1, if its chords are those of whole ones.
-    whole: Vec<Option<f32>>,
+    bands: Vec<Band>,
     /// How far inside the left side, and the right one, a disc's centre is when its chord begins to be inside: negative, in pixels.
     offsets: [Vec<f32>; 2],
     /// Where each side's offsets are: where both sides are alike, the first one's serve both.
@@ -62,13 +61,21 @@ pub(super) struct Row {
     y: Option<f64>,
 }
 
+/// What the chords of a band weigh.
+#[derive(Debug, Default, Clone, Copy)]
+pub(super) struct Band {
+    /// The factor on their weights.
+    pub(super) scale: f32,
+    /// What the rectangle's height leaves of its discs, 0 to 1, if the chords are those of whole ones.
+    whole: Option<f32>,
+}
+
 impl Row {
-    /// How many bands there are.
-    pub(super) fn bands(&self) -> usize {
-        self.whole.len()
+    pub(super) fn bands(&self) -> &[Band] {
+        &self.bands
     }
 
-    /// What a band's discs see of a side: the width of each chord, its offset and the weight of what is inside.
+    /// What a band's discs see of a side: the width of each chord, its offset and the weight of what is inside, up to the band's scale.
     #[inline(always)]
     pub(super) fn chords(&self, band: usize, side: usize) -> impl Iterator<Item = (f32, f32, f32)> {
         let start = band * self.places_of_band;
@@ -107,8 +114,8 @@ impl Nodes {
         for list in [heights, widths, weights, left, right] {
             list.resize(bands * filled, 0.0);
         }
-        row.whole.clear();
-        row.whole.resize(bands, None);
+        row.bands.clear();
+        row.bands.resize(bands, Band::default());
         let [tl, tr, br, bl] = shape.radii;
         (row.count, row.places_of_band, row.y) = (count, filled, None);
         row.places = if tl == tr && bl == br { [0, 0] } else { [0, 1] };
@@ -146,17 +153,19 @@ impl Nodes {
         let reach = kernel.reach();
         let ends = [shape.min.y - y, shape.max.y - y];
         let is_whole = ends[0] <= -reach && ends[1] >= reach;
-        if let Some(between) = row.whole[band].filter(|_| is_whole) {
+        if let Some(between) = row.bands[band].whole.filter(|_| is_whole) {
             return between;
         }
-        let (start, start_cosine, start_above) = end_of(kernel, ends[0]);
-        let (end, end_cosine, end_above) = end_of(kernel, ends[1]);
-        let between = ((end_above - start_above) / kernel.count() as f64) as f32;
-        row.whole[band] = is_whole.then_some(between);
+        let Ends {
+            angles: [start, end],
+            cosines,
+            between,
+        } = Ends::new(simd, kernel, ends);
+        let between = between / kernel.count() as f32;
         let splat = |v: f32| f32x16::splat(simd, v);
         let (zero, one) = (splat(0.0), splat(1.0));
-        let (start, length) = (start as f32, (end - start) as f32);
-        let closer = [start_cosine as f32 * CLOSER, end_cosine as f32 * CLOSER];
+        let length = end - start;
+        let closer = [cosines[0] * CLOSER, cosines[1] * CLOSER];
         let reach = reach as f32;
         let is_averaged = kernel.is_averaged();
         let mut total = zero;
@@ -175,27 +184,22 @@ impl Nodes {
             let share = gain * cosine * f32x16::from_slice(simd, shares);
             let (mut width, mut weight) = (cosine * (2.0 * reach), share);
             if is_averaged {
-                let mut heights = [0.0; LANES];
-                sine.store_slice(&mut heights);
-                let [widths, met] = kernel.chords(&heights);
-                width = f32x16::from_slice(simd, &widths);
-                weight = share * f32x16::from_slice(simd, &met);
+                let [chords, met] = kernel.chords(simd, sine);
+                (width, weight) = (chords, share * met);
             }
             total += weight * width;
             (sine * reach).store_slice(&mut row.heights[place.clone()]);
             weight.store_slice(&mut row.weights[place.clone()]);
             width.store_slice(&mut row.widths[place]);
         }
-        let scale = if between > 0.0 {
-            between / sum(total)
-        } else {
-            0.0
+        row.bands[band] = Band {
+            scale: if between > 0.0 {
+                between / sum(total)
+            } else {
+                0.0
+            },
+            whole: is_whole.then_some(between),
         };
-        let weights = &mut row.weights[first..first + midpoints.len()];
-        for weights in weights.as_chunks_mut::<LANES>().0 {
-            let scaled = f32x16::from_slice(simd, weights) * scale;
-            scaled.store_slice(weights);
-        }
         between
     }
 
@@ -234,14 +238,41 @@ impl Nodes {
     }
 }
 
-/// The angle at which a band ends that far below its middle, in pixels, its cosine, and how much of the band lies above.
+/// Where a band's discs begin and end within a rectangle.
+struct Ends {
+    angles: [f32; 2],
+    cosines: [f32; 2],
+    /// How much of the band lies between them.
+    between: f32,
+}
+
+impl Ends {
+    /// For what begins and ends that far below the band's middle, in pixels.
+    #[inline(always)]
+    fn new<S: Simd>(simd: S, kernel: &Kernel, ends: [f64; 2]) -> Self {
+        let mut sines = [0.0; LANES];
+        for (sine, end) in sines.iter_mut().zip(ends) {
+            *sine = (end / kernel.reach()).clamp(-1.0, 1.0) as f32;
+        }
+        let lanes = f32x16::from_slice(simd, &sines);
+        let cosines = (f32x16::splat(simd, 1.0) - lanes * lanes).sqrt();
+        // The disc's half is (sin t cos t + t) / 2π.
+        let halves = half_discs(simd, lanes);
+        let angles = halves * TAU - lanes * cosines;
+        let [start, end] = pair(halves);
+        Self {
+            angles: pair(angles),
+            cosines: pair(cosines),
+            between: kernel.above(sines[1], end) - kernel.above(sines[0], start),
+        }
+    }
+}
+
+/// The first two lanes.
 #[inline(always)]
-fn end_of(kernel: &Kernel, end: f64) -> (f64, f64, f64) {
-    let sine = (end / kernel.reach()).clamp(-1.0, 1.0);
-    let cosine = (1.0 - sine * sine).sqrt();
-    // The disc's half is (sin t cos t + t) / 2π.
-    let half = f64::from(Window::Disc.half(sine));
-    (TAU * half - sine * cosine, cosine, kernel.above(sine, half))
+fn pair<S: Simd>(lanes: f32x16<S>) -> [f32; 2] {
+    let lanes = lanes.as_slice();
+    [lanes[0], lanes[1]]
 }
 
 /// The sum of all lanes, in pairs.
@@ -305,9 +336,11 @@ mod tests {
                 for step in -30..=60 {
                     let y = f64::from(step) * 0.71;
                     dispatch!(Level::new(), simd => nodes.place(simd, &shape, y));
-                    let bands = 0..nodes.row.bands();
-                    let chords = bands.flat_map(|band| nodes.row.chords(band, 1));
-                    let all: f32 = chords.map(|(width, _, weight)| width * weight).sum();
+                    let mut all = 0.0;
+                    for (band, Band { scale, .. }) in nodes.row.bands().iter().enumerate() {
+                        let chords = nodes.row.chords(band, 1);
+                        all += scale * chords.map(|(w, _, weight)| w * weight).sum::<f32>();
+                    }
                     let between = nodes.kernel.between([shape.min.y - y, shape.max.y - y]);
                     let label = format!("r {radius}, {levels} levels, y {y}");
                     assert!((all - nodes.row.between).abs() < 2e-6, "{label}: {all}");

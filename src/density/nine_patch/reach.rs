@@ -4,7 +4,7 @@ use core::ops::Range;
 
 use fearless_simd::{Simd, SimdBase, f32x16};
 
-use super::nodes::Row;
+use super::nodes::{Band, Row};
 use crate::density::lanes::{LANES, lanes};
 
 /// Columns that are taken at once.
@@ -78,29 +78,26 @@ impl Reach<'_> {
                 };
             }
             let splat = |v: f32| f32x16::splat(simd, v);
-            if self.square > 0.0 {
-                let (square, share) = (splat(self.square), splat(0.5 / self.square));
-                for band in 0..self.row.bands() {
-                    for (width, offset, weight) in self.row.chords(band, side) {
-                        let (offset, width, weight) = (splat(offset), splat(width), splat(weight));
-                        for block in 0..BLOCKS {
+            let (square, share) = (splat(self.square), splat(0.5 / self.square));
+            for (band, Band { scale, .. }) in self.row.bands().iter().enumerate() {
+                let mut band_sums = [zero; BLOCKS];
+                for (width, offset, weight) in self.row.chords(band, side) {
+                    let (offset, width, weight) = (splat(offset), splat(width), splat(weight));
+                    for block in 0..BLOCKS {
+                        let entered = depths[block] + offset;
+                        let inside = if self.square > 0.0 {
                             // A chord's end enters the square from one side on, and its other end after it.
-                            let entered = depths[block] + offset;
                             let (first, last) = (entered.max(zero), (entered - width).max(zero));
                             let (near, far) = (first.min(square), last.min(square));
-                            let inside =
-                                (near * near - far * far) * share + ((first - near) - (last - far));
-                            sums[block] += inside * weight;
-                        }
+                            (near * near - far * far) * share + ((first - near) - (last - far))
+                        } else {
+                            entered.max(zero).min(width)
+                        };
+                        band_sums[block] += inside * weight;
                     }
                 }
-                continue;
-            }
-            for (width, offset, weight) in self.row.chords(0, side) {
-                let (offset, width, weight) = (splat(offset), splat(width), splat(weight));
-                for block in 0..BLOCKS {
-                    let inside = (depths[block] + offset).max(zero).min(width);
-                    sums[block] += inside * weight;
+                for (sum, band_sum) in sums.iter_mut().zip(band_sums) {
+                    *sum += band_sum * *scale;
                 }
             }
         }
