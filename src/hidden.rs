@@ -186,18 +186,12 @@ impl Hidden {
             .spans
             .is_sorted_by(|a, b| (a.row, a.end) < (b.row, b.start))
         {
-            let mut at = 0;
-            self.rows.resize(height as usize + 1, 0);
-            for (row, start) in self.rows.iter_mut().enumerate() {
-                while self
-                    .spans
-                    .get(at)
-                    .is_some_and(|span| (span.row as usize) < row)
-                {
-                    at += 1;
-                }
-                *start = at as u32;
+            self.rows.clear();
+            for (at, span) in self.spans.iter().enumerate() {
+                let begun = (span.row as usize + 1).max(self.rows.len());
+                self.rows.resize(begun, at as u32);
             }
+            self.rows.resize(height as usize + 1, self.spans.len() as u32);
             return;
         }
         sort_by_row(

@@ -7,11 +7,11 @@ use crate::density::rounded::Rounded;
 pub(super) fn find(card: &Rounded, [width, height]: [u32; 2], mut push: impl FnMut(u32, u32, u32)) {
     let [top_left, top_right, bottom_right, bottom_left] = card.radii;
     let (width, height) = (f64::from(width), f64::from(height));
-    let first = card.min.y.ceil().clamp(0.0, height) as u32;
-    let end = card.max.y.floor().clamp(0.0, height) as u32;
+    let first = ceil(card.min.y.clamp(0.0, height));
+    let end = card.max.y.clamp(0.0, height) as u32;
     let columns = |left: f64, right: f64| {
-        let start = (card.min.x + left).ceil().clamp(0.0, width) as u32;
-        let end = (card.max.x - right).floor().clamp(0.0, width) as u32;
+        let start = ceil((card.min.x + left).clamp(0.0, width));
+        let end = (card.max.x - right).clamp(0.0, width) as u32;
         (start, end)
     };
     let (upper, lower) = (top_left.max(top_right), bottom_left.max(bottom_right));
@@ -32,6 +32,12 @@ pub(super) fn find(card: &Rounded, [width, height]: [u32; 2], mut push: impl FnM
             push(row, start, end);
         }
     }
+}
+
+/// The first whole number from one that is not negative on. The function for it is a call where a level has no instruction.
+fn ceil(v: f64) -> u32 {
+    let whole = v as u32;
+    whole + u32::from(f64::from(whole) < v)
 }
 
 /// How far a corner's circle is drawn in at a `depth` inside of the side that it ends at.
