@@ -103,13 +103,12 @@ fn rounded(density: f32) -> f32 {
 impl Pixels {
     /// As many pixels of which nothing is known.
     pub(super) fn reset(&mut self, count: usize) {
-        for list in [
-            &mut self.held,
-            &mut self.met,
-            &mut self.first,
-            &mut self.second,
-        ] {
+        for list in [&mut self.held, &mut self.met] {
             list.clear();
+            list.resize(count, 0.0);
+        }
+        // What is left in these is read of no pixel before it is written.
+        for list in [&mut self.first, &mut self.second] {
             list.resize(count, 0.0);
         }
         self.seen.clear();
