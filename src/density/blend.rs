@@ -237,10 +237,11 @@ struct Brush<S: Simd> {
 /// Paint on pixels, two of whose channels each of its vectors holds.
 #[derive(Clone, Copy)]
 struct Coat<V> {
-    /// In 65535ths.
-    opacity: V,
-    /// What paint and rounding add to both pairs of channels, in 256ths: with what is left of a channel these are 255 upper bytes and
-    /// 1 at most, a threshold is 254 lower ones.
+    /// How much is left of what is below, in 65535ths: cut off to 256ths of a level, all of it is one of them less, which any
+    /// threshold makes up for.
+    left: V,
+    /// What paint and rounding add to both pairs of channels, in 256ths: with what is left of a channel these are 255 upper bytes at
+    /// most, a threshold is 254 lower ones.
     red_blue: V,
     green_alpha: V,
 }
@@ -278,9 +279,9 @@ impl<S: Simd> Brush<S> {
         let brush = core::hint::black_box(self);
         let opacity: i32x16<S> = (densities * self.strength + 0.5).to_int();
         let opacity: u32x16<S> = opacity.bitcast();
-        let opacity = (opacity | (opacity << 16)).bitcast();
+        let opacity: u16x32<S> = (opacity | (opacity << 16)).bitcast();
         Coat {
-            opacity,
+            left: !opacity,
             red_blue: high(brush.red_blue, opacity) + self.thresholds,
             green_alpha: high(brush.green_alpha, opacity) + self.thresholds,
         }
@@ -309,7 +310,7 @@ impl<S: Simd> Coat<u16x32<S>> {
     #[inline(always)]
     fn half(&self) -> Coat<u16x16<S>> {
         Coat {
-            opacity: self.opacity.split().0,
+            left: self.left.split().0,
             red_blue: self.red_blue.split().0,
             green_alpha: self.green_alpha.split().0,
         }
@@ -324,8 +325,8 @@ impl<V> Coat<V> {
         V: SimdInt<S, Element = u16>,
     {
         let pixels = V::from_bytes(V::ByteVector::from_slice(simd, block));
-        let red_blue = over(pixels << 8, self.opacity, self.red_blue) >> 8;
-        let green_alpha = over(pixels & UPPER, self.opacity, self.green_alpha) & UPPER;
+        let red_blue = (high(pixels << 8, self.left) + self.red_blue) >> 8;
+        let green_alpha = (high(pixels & UPPER, self.left) + self.green_alpha) & UPPER;
         (red_blue | green_alpha).to_bytes().store_slice(block);
     }
 
@@ -344,12 +345,6 @@ impl<V> Coat<V> {
         self.blend(simd, &mut block);
         rest.copy_from_slice(&block[..rest.len()]);
     }
-}
-
-/// Two channels under paint, to be cut off to their upper bytes.
-#[inline(always)]
-fn over<S: Simd, V: SimdInt<S, Element = u16>>(below: V, opacity: V, paint: V) -> V {
-    below - high(below, opacity) + paint
 }
 
 /// The upper half of each product.
