@@ -1,5 +1,6 @@
 //! Paint blended onto premultiplied RGBA8, by densities or by coverage.
 
+use core::hint::black_box;
 use core::ops::Range;
 
 use fearless_simd::{
@@ -107,7 +108,7 @@ impl Ink {
             let pixels = &mut pixels[4 * row * layout.stride..];
             let (blocks, end) = pixels.split_at_mut(4 * (count - left));
             for block in blocks.as_chunks_mut::<BLOCK>().0 {
-                core::hint::black_box(&coat).blend(simd, block);
+                black_box(&coat).blend(simd, block);
             }
             if let Some(rest) = &rest {
                 brush.blend_rest(end, left, rest);
@@ -276,7 +277,7 @@ impl<S: Simd> Brush<S> {
 
     #[inline(always)]
     fn coat(&self, densities: f32x16<S>) -> Coat<u16x32<S>> {
-        let brush = core::hint::black_box(self);
+        let brush = black_box(self);
         let opacity: i32x16<S> = (densities * self.strength + 0.5).to_int();
         let opacity: u32x16<S> = opacity.bitcast();
         let opacity: u16x32<S> = (opacity | (opacity << 16)).bitcast();
