@@ -300,6 +300,18 @@ mod tests {
 
     #[test]
     fn every_simd_level_gives_the_same_bits() {
+        let levels = levels();
+        println!("{levels:?}");
+        // Where nothing is optimised each takes a minute.
+        std::thread::scope(|scope| {
+            for shape in shapes() {
+                let levels = &levels;
+                scope.spawn(move || levels_give_the_same_bits(levels, &shape));
+            }
+        });
+    }
+
+    fn levels_give_the_same_bits(levels: &[Level], shape: &Shape) {
         let grid = Grid::new([0.0, 0.0], [125, 121], 1.0).unwrap();
         let paint = Paint::new(Color::rgb(30, 60, 90), 0.6).unwrap();
         let methods = [
@@ -308,62 +320,58 @@ mod tests {
             Some(Method::Grid),
             Some(Method::NinePatch),
         ];
-        let levels = levels();
-        println!("{levels:?}");
-        for shape in shapes() {
-            for radius in [0.0_f32, 0.2, 0.7, 1.7, 2.6, 6.0, 20.0, 45.0] {
-                let light = Light::directional([0.0, 0.0], radius).unwrap();
-                let shadow = light.cast(&shape, 1.0, 0.0).unwrap();
-                for method in methods {
-                    let options = PixelOptions {
-                        method,
-                        dither: true,
-                        ..PixelOptions::default()
-                    };
-                    let drawn = levels.iter().map(|level| {
-                        let mut scratch = Scratch::at_level(*level);
-                        let mut densities = vec![0.0; 125 * 121];
-                        let mut mask = vec![0; 125 * 121];
-                        let mut pixels = vec![180; 4 * 125 * 121];
-                        shadow
-                            .fill_f32(&grid, &mut densities, &options, &mut scratch)
-                            .unwrap();
-                        shadow
-                            .fill_a8_with(&grid, &mut mask, &options, &mut scratch)
-                            .unwrap();
-                        shadow
-                            .blend_rgba8(&grid, &mut pixels, &paint, &options, &mut scratch)
-                            .unwrap();
-                        paint
-                            .blend_mask(&grid, &mask, &mut pixels, &mut scratch)
-                            .unwrap();
-                        let bits: Vec<u32> = densities.iter().map(|d| d.to_bits()).collect();
-                        (bits, mask, pixels)
-                    });
-                    let drawn: Vec<_> = drawn.collect();
-                    assert!(
-                        drawn.windows(2).all(|pair| pair[0] == pair[1]),
-                        "{method:?}, r {radius}"
-                    );
-                }
-                let options = MeshOptions::new(Tolerance::ONE_LEVEL).quick();
-                let meshes = levels.iter().map(|level| {
+        for radius in [0.0_f32, 0.2, 0.7, 1.7, 2.6, 6.0, 20.0, 45.0] {
+            let light = Light::directional([0.0, 0.0], radius).unwrap();
+            let shadow = light.cast(shape, 1.0, 0.0).unwrap();
+            for method in methods {
+                let options = PixelOptions {
+                    method,
+                    dither: true,
+                    ..PixelOptions::default()
+                };
+                let drawn = levels.iter().map(|level| {
                     let mut scratch = Scratch::at_level(*level);
-                    let mut mesh = MeshBuffers::<u32>::new();
-                    shadow.mesh_into(&mut mesh, options, &mut scratch).unwrap();
-                    let vertex = |v: &MeshVertex| {
-                        let [x, y] = v.position;
-                        [x, y, v.density].map(f32::to_bits)
-                    };
-                    let vertices: Vec<_> = mesh.vertices.iter().map(vertex).collect();
-                    (vertices, mesh.indices)
+                    let mut densities = vec![0.0; 125 * 121];
+                    let mut mask = vec![0; 125 * 121];
+                    let mut pixels = vec![180; 4 * 125 * 121];
+                    shadow
+                        .fill_f32(&grid, &mut densities, &options, &mut scratch)
+                        .unwrap();
+                    shadow
+                        .fill_a8_with(&grid, &mut mask, &options, &mut scratch)
+                        .unwrap();
+                    shadow
+                        .blend_rgba8(&grid, &mut pixels, &paint, &options, &mut scratch)
+                        .unwrap();
+                    paint
+                        .blend_mask(&grid, &mask, &mut pixels, &mut scratch)
+                        .unwrap();
+                    let bits: Vec<u32> = densities.iter().map(|d| d.to_bits()).collect();
+                    (bits, mask, pixels)
                 });
-                let meshes: Vec<_> = meshes.collect();
+                let drawn: Vec<_> = drawn.collect();
                 assert!(
-                    meshes.windows(2).all(|pair| pair[0] == pair[1]),
-                    "mesh, r {radius}"
+                    drawn.windows(2).all(|pair| pair[0] == pair[1]),
+                    "{method:?}, r {radius}"
                 );
             }
+            let options = MeshOptions::new(Tolerance::ONE_LEVEL).quick();
+            let meshes = levels.iter().map(|level| {
+                let mut scratch = Scratch::at_level(*level);
+                let mut mesh = MeshBuffers::<u32>::new();
+                shadow.mesh_into(&mut mesh, options, &mut scratch).unwrap();
+                let vertex = |v: &MeshVertex| {
+                    let [x, y] = v.position;
+                    [x, y, v.density].map(f32::to_bits)
+                };
+                let vertices: Vec<_> = mesh.vertices.iter().map(vertex).collect();
+                (vertices, mesh.indices)
+            });
+            let meshes: Vec<_> = meshes.collect();
+            assert!(
+                meshes.windows(2).all(|pair| pair[0] == pair[1]),
+                "mesh, r {radius}"
+            );
         }
     }
 }

@@ -191,7 +191,8 @@ impl Hidden {
                 let begun = (span.row as usize + 1).max(self.rows.len());
                 self.rows.resize(begun, at as u32);
             }
-            self.rows.resize(height as usize + 1, self.spans.len() as u32);
+            self.rows
+                .resize(height as usize + 1, self.spans.len() as u32);
             return;
         }
         sort_by_row(
