@@ -272,6 +272,47 @@ fn corners_nearly_as_round_as_the_disc_keep_their_tolerance() {
     summary.finish();
 }
 
+/// The same for cards of all sizes: rows are close to each other about a tip alone. As many as `PENUMBRAL_CASES` says from seed
+/// `PENUMBRAL_SEED` on.
+#[test]
+fn cards_with_tips_keep_their_tolerance() {
+    let (mut scratch, mut summary) = (Scratch::new(), Summary::default());
+    let first = setting("PENUMBRAL_SEED", 0);
+    for seed in first..first + setting("PENUMBRAL_CASES", 200) {
+        let random = &mut Random::new(seed as u64);
+        let radius = 6.0 + 40.0 * random.between(0.0, 1.0) * random.between(0.0, 1.0);
+        let levels = random.pick(&[0.5, 1.0, 1.0, 2.0]);
+        let mut corner = || radius * random.between(0.45, 1.5);
+        let [a, b, c, d] = [corner(), corner(), corner(), corner()];
+        let radii = random.pick(&[[a; 4], [a; 4], [a, b, b, a], [a, b, c, d]]);
+        let least = 2.0 * radii.into_iter().fold(0.0, f32::max);
+        let [w, h] = [0, 1].map(|_| {
+            let most = random.pick(&[1.0, 4.0 * radius]);
+            least + random.between(0.0, most)
+        });
+        let [x, y] = [0, 1].map(|_| 2.0 * radius + 3.0 + random.between(0.0, 1.0));
+        let card = Shape::rounded_rect(x, y, w, h, radii).unwrap();
+        let light = Light::directional([0.0, 0.0], radius).unwrap();
+        let shadow = light.cast(&card, 1.0, 0.0).unwrap();
+        let size = [w, h].map(|side| (side + 4.0 * radius) as u32 + 8);
+        let grid = Grid::new([0.0, 0.0], size, 1.0).unwrap();
+        let mut drawn = |method, levels| {
+            let tolerance = Tolerance::levels(levels).unwrap();
+            let options = PixelOptions {
+                tolerance,
+                ..by(Some(method))
+            };
+            densities(&shadow, &grid, &options, &mut scratch)
+        };
+        let direct = drawn(Method::Direct, 0.0625);
+        let error = worst_of(&direct, &drawn(Method::NinePatch, levels));
+        let label = format!("seed {seed}: {w} x {h}, {radii:?}, r {radius}");
+        let what = format!("tips, tolerance {levels}");
+        summary.add(what, error, levels - 0.0625, &label);
+    }
+    summary.finish();
+}
+
 #[test]
 fn corners_of_very_different_radii_keep_their_tolerance() {
     let (mut scratch, mut summary) = (Scratch::new(), Summary::default());

@@ -9,7 +9,7 @@ use glam::DVec2;
 
 use super::frame::Frame;
 use super::lanes::{LANES, lanes};
-use super::rows::{self, Power, RowCircle};
+use super::rows::{self, Power};
 use super::{PixelOptions, Sink, seen_columns};
 use crate::grid::Grid;
 use crate::scratch::Scratch;
@@ -33,6 +33,15 @@ pub(crate) fn fill<S: Simd>(
     }
     let ratio = (max.x - min.x) / 2.0 * frame.scale / radius;
     let (values, wanted) = (&mut scratch.values, &mut scratch.wanted);
+    // Whole vectors are written from any place on.
+    let most = (columns.end - columns.start) as usize;
+    values.resize(most.next_multiple_of(LANES) + LANES, 0.0);
+    let within =
+        |part: &Range<i64>, of: &Range<i64>| part.start.max(of.start)..part.end.min(of.end);
+    let on_grid = |part: &Range<i64>| {
+        let column = |x: i64| (x - frame.first[0]) as u32;
+        column(part.start)..column(part.end)
+    };
     // Column and row numbers are the coordinates of their pixels' centres.
     let center = frame.place((min + max) / 2.0) - frame.phase - 0.5;
     let inside = ratio.min(1.0).powi(2) as f32;
@@ -50,46 +59,67 @@ pub(crate) fn fill<S: Simd>(
         let row = (line - frame.first[1]) as u32;
         seen_columns(options.hidden, row, &frame, &columns, wanted);
         for wanted in wanted.iter() {
-            let within = |part: &Range<i64>| part.start.max(wanted.start)..part.end.min(wanted.end);
-            let column = |x: i64| (x - frame.first[0]) as u32;
-            let constant = within(&even);
+            let constant = within(&even, wanted);
             if !constant.is_empty() {
-                sink.constant(
-                    row..row + 1,
-                    column(constant.start)..column(constant.end),
-                    inside,
-                );
+                sink.constant(row..row + 1, on_grid(&constant), inside);
             }
-            for side in [reached.start..even.start, even.end..reached.end] {
-                let part = within(&side);
-                if !part.is_empty() {
-                    // From the side's own beginning on, so that what else is drawn changes nothing.
-                    let seen = DVec2::new(center.x - side.start as f64, -down) / radius;
-                    let circle = RowCircle {
-                        power: Power::of(seen, ratio, 1.0 / radius, f32x16::splat(simd, 0.0)),
-                        radius: ratio as f32,
-                    };
-                    let skipped = (part.start - side.start) as usize;
-                    let count = (part.end - part.start) as usize;
-                    values.resize(count.next_multiple_of(LANES), 0.0);
-                    fill_row(simd, &circle, skipped, values);
-                    sink.values(row..row + 1, column(part.start)..column(part.end), values);
-                }
-            }
+        }
+        let sides = [reached.start..even.start, even.end..reached.end];
+        // Left and right of what is constant, one after the other, so that they fill whole vectors.
+        let parts = || {
+            let parts = wanted.iter().flat_map(|wanted| {
+                let of_side = |side: &Range<i64>| (side.start, within(side, wanted));
+                sides.iter().map(of_side)
+            });
+            parts.filter(|(_, part)| !part.is_empty())
+        };
+        let mut count = 0;
+        for (start, part) in parts() {
+            // From the side's own beginning on, so that what else is drawn changes nothing.
+            let seen = DVec2::new(center.x - start as f64, -down) / radius;
+            let power = Power::of(seen, ratio, 1.0 / radius, f32x16::splat(simd, 0.0));
+            let length = (part.end - part.start) as usize;
+            let powers = &mut values[count..][..length.next_multiple_of(LANES)];
+            place(simd, power, (part.start - start) as usize, powers);
+            count += length;
+        }
+        fill_all(
+            simd,
+            ratio as f32,
+            &mut values[..count.next_multiple_of(LANES)],
+        );
+        let mut values = &values[..];
+        for (_, part) in parts() {
+            sink.values(row..row + 1, on_grid(&part), values);
+            values = &values[(part.end - part.start) as usize..];
         }
     }
 }
 
-/// Computes the densities of pixels from the one `skipped` after the first on.
+/// Places the powers of pixels from the one `skipped` after the first on.
 #[inline(always)]
-fn fill_row<S: Simd>(simd: S, circle: &RowCircle<S>, skipped: usize, values: &mut [f32]) {
+fn place<S: Simd>(simd: S, power: Power<S>, skipped: usize, powers: &mut [f32]) {
     simd.vectorize(
         #[inline(always)]
         || {
             let mut columns = lanes(simd) + skipped as f32;
-            for values in values.as_chunks_mut::<LANES>().0 {
-                rows::circle(simd, columns, circle).store_slice(values);
+            for powers in powers.as_chunks_mut::<LANES>().0 {
+                power.at(columns).store_slice(powers);
                 columns += LANES as f32;
+            }
+        },
+    );
+}
+
+/// Computes densities in the place of powers.
+#[inline(always)]
+fn fill_all<S: Simd>(simd: S, radius: f32, values: &mut [f32]) {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            for values in values.as_chunks_mut::<LANES>().0 {
+                let power = f32x16::from_slice(simd, values);
+                rows::circle(simd, power, radius).store_slice(values);
             }
         },
     );

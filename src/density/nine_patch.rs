@@ -95,14 +95,14 @@ struct Zone {
     /// The blocks of them that were computed.
     done: [Range<usize>; RING],
     /// The cell that pixels were last asked for in, and the blocks for which all of its rows are there.
-    cell: [i64; RING],
+    cell: [i64; 4],
     ready: Range<usize>,
     /// The pixels' densities where rows are apart.
     values: Vec<f32>,
 }
 
-/// Rows that are kept: the four that a pixel is interpolated from.
-const RING: usize = 4;
+/// Rows that are kept: among them the four that a pixel is interpolated from, of which every second may be left out.
+const RING: usize = 8;
 
 /// The number of no row.
 const NONE: i64 = i64::MIN;
@@ -199,7 +199,7 @@ impl NinePatchScratch {
             zone.end = range.1.floor() as i64 + 1;
             zone.met = [!apart || index == 0, !apart || index == 1];
             zone.sides = [shape.min.x, shape.max.x].map(|x| (x - zone.start as f64) as f32);
-            (zone.which, zone.cell) = ([NONE; RING], [NONE; RING]);
+            (zone.which, zone.cell) = ([NONE; RING], [NONE; 4]);
             let width = ((zone.end - zone.start) as usize).next_multiple_of(2 * BLOCK);
             for row in &mut zone.rows {
                 row.resize(width, 0.0);

@@ -15,7 +15,7 @@ mod points;
 mod seen;
 mod stroke;
 
-pub(crate) use arcs::{Power, RowCircle, circle};
+pub(crate) use arcs::{Power, circle};
 pub(crate) use bands::{BAND, Bands, to_tiles};
 pub(crate) use kernels::{Wide, half_disc, half_discs, line_at, turns, whole_disc};
 pub(crate) use pieces::{ERROR, arc_chord, each_line, sort};

@@ -16,6 +16,7 @@ pub(super) fn find(card: &Rounded, [width, height]: [u32; 2], mut push: impl FnM
     };
     let (upper, lower) = (top_left.max(top_right), bottom_left.max(bottom_right));
     let between = columns(0.0, 0.0);
+    let is_even = top_left == top_right && bottom_left == bottom_right;
     for row in first..end {
         // A row is narrowest where it is nearest to the rectangle's top or bottom.
         let above = f64::from(row) - card.min.y;
@@ -23,10 +24,13 @@ pub(super) fn find(card: &Rounded, [width, height]: [u32; 2], mut push: impl FnM
         let (start, end) = if above >= upper && below >= lower {
             between
         } else {
-            columns(
-                inset(top_left, above).max(inset(bottom_left, below)),
-                inset(top_right, above).max(inset(bottom_right, below)),
-            )
+            let left = inset(top_left, above).max(inset(bottom_left, below));
+            if is_even {
+                columns(left, left)
+            } else {
+                let right = inset(top_right, above).max(inset(bottom_right, below));
+                columns(left, right)
+            }
         };
         if start < end {
             push(row, start, end);

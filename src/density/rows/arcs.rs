@@ -39,7 +39,7 @@ impl<S: Simd> Power<S> {
     }
 
     #[inline(always)]
-    fn at(self, columns: f32x16<S>) -> f32x16<S> {
+    pub(crate) fn at(self, columns: f32x16<S>) -> f32x16<S> {
         columns * (columns * self.curvature + self.slope) + self.start
     }
 }
@@ -364,18 +364,10 @@ fn of_large_circle<S: Simd>(simd: S, power: f32x16<S>, radius: f32) -> f32x16<S>
     segment(simd, half_chord, squared, radius) - half_disc_at(simd, half_chord, reach) * 2.0
 }
 
-/// A circle, seen from pixels.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct RowCircle<S: Simd> {
-    pub(crate) power: Power<S>,
-    pub(crate) radius: f32,
-}
-
-/// What discs have of a circle.
+/// What discs have of a circle of that radius, for the pixels' powers with respect to it.
 #[inline(always)]
-pub(crate) fn circle<S: Simd>(simd: S, columns: f32x16<S>, circle: &RowCircle<S>) -> f32x16<S> {
+pub(crate) fn circle<S: Simd>(simd: S, power: f32x16<S>, radius: f32) -> f32x16<S> {
     let (zero, one) = (f32x16::splat(simd, 0.0), f32x16::splat(simd, 1.0));
-    let (radius, power) = (circle.radius, circle.power.at(columns));
     let density = if radius >= core::f32::consts::SQRT_2 {
         of_large_circle(simd, power, radius) + 0.5
     } else {
