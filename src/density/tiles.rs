@@ -9,7 +9,7 @@
 use core::f32::consts::FRAC_1_PI;
 use core::iter::once;
 
-use fearless_simd::{Simd, SimdBase, SimdCombine, f32x4, f32x8, f32x16};
+use fearless_simd::{Simd, SimdBase, SimdCombine, SimdFloat, f32x4, f32x8, f32x16, i32x16};
 use glam::DVec2;
 
 use super::lanes::LANES;
@@ -264,7 +264,7 @@ impl Tiles {
         );
         let downs = places.downs.each_ref().map(load);
         let zero = f32x16::splat(simd, 0.0);
-        let mut rows = [[0.0; LANES]; N];
+        let (mut rows, mut units) = ([[0.0; LANES]; N], [[0; LANES]; N]);
         for &index in &*active {
             let piece = &pieces[index as usize];
             let [first, enters, leaves, last] = piece.parts(top, places, tiles);
@@ -275,18 +275,23 @@ impl Tiles {
             let ends = [piece.from.y, piece.to.y].map(|y| (y - middle) as f32);
             let ends = f32x8::splat(simd, ends[0]).combine(f32x8::splat(simd, ends[1]));
             for pair in 0..N.div_ceil(2) {
-                half_discs(simd, ends - downs[pair]).store_slice(&mut rows[pair]);
+                let halves = half_discs(simd, ends - downs[pair]);
+                halves.store_slice(&mut rows[pair]);
+                // Each end is rounded alone, so that what follows cancels it.
+                let whole: i32x16<S> = (halves * UNIT).to_int();
+                whole.store_slice(&mut units[pair]);
             }
             for place in 0..N {
                 let first_row = place % 2 * SIDE;
-                let ends = [first_row, LANES / 2 + first_row].map(|row| {
+                let last_row = LANES / 2 + first_row;
+                let ends = [first_row, last_row].map(|row| {
                     let rows = rows[place / 2][row..].first_chunk::<SIDE>();
                     rows.map_or([0.0; SIDE], |rows| *rows)
                 });
+                let units = &units[place / 2];
                 for tile in [first, last] {
                     for (row, change) in beside[tile * N + place].iter_mut().enumerate() {
-                        // Each end is rounded alone, so that what follows cancels it.
-                        let risen = (ends[1][row] * UNIT) as i32 - (ends[0][row] * UNIT) as i32;
+                        let risen = units[last_row + row] - units[first_row + row];
                         *change = change.wrapping_sub(risen);
                     }
                 }

@@ -400,7 +400,7 @@ impl HalvingScratch {
         self.numbers.reserve(KINDS * lattice.count());
         self.numbers.resize(all * lattice.count(), NONE);
         self.vertices.clear();
-        for &corner in self.corners.iter().flatten() {
+        for &corner in self.corners.as_flattened() {
             let number = &mut self.numbers[corner as usize];
             if *number == NONE {
                 *number = self.vertices.len() as u32;

@@ -106,8 +106,11 @@ impl Tube {
         let [columns, rows] = self.size;
         let count = columns * rows;
         self.limit = limit;
-        for density in self.densities.iter_mut().chain(&mut self.centers) {
-            *density = clean(*density);
+        // One list after the other: chained they are not taken by vectors.
+        for densities in [&mut self.densities, &mut self.centers] {
+            for density in densities {
+                *density = clean(*density);
+            }
         }
         for (bounds, empty) in [(&mut self.least, -limit), (&mut self.most, limit)] {
             bounds.clear();
