@@ -17,7 +17,7 @@ pub(super) struct Lattice {
     pitch: f64,
     /// Whether pixels are interpolated between them: otherwise there is one for each row of pixels.
     is_apart: bool,
-    /// Every so manyth of them is enough, except where corners' circles have tips.
+    /// Every so manyth of them is enough, a power of two, except where corners' circles have tips.
     step: i64,
     tips: Range<f64>,
     /// The columns that are computed of a row.
@@ -160,7 +160,7 @@ impl Lattice {
         // The function for it is a call where a level has no instruction.
         let whole = place as i64;
         let row = whole - i64::from(whole as f64 > place);
-        let row = row - row.rem_euclid(step);
+        let row = row & -step;
         let share = (place - row as f64) / step as f64;
         if self.is_apart {
             Cell {
