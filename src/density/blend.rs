@@ -10,7 +10,7 @@ use fearless_simd::{
 
 use super::Sink;
 use super::dither::{Layout, thresholds};
-use super::lanes::{NUMBERS, last_block};
+use super::lanes::{NUMBERS, change_block, last_block};
 use crate::paint::Paint;
 use crate::tone::Color;
 
@@ -337,14 +337,12 @@ impl<V> Coat<V> {
     where
         V: SimdInt<S, Element = u16>,
     {
-        if let Some(block) = rest.first_chunk_mut::<SIZE>() {
-            self.blend(simd, block);
-            return;
-        }
-        let (mut block, rest) = ([0; SIZE], &mut rest[..4 * count]);
-        block[..rest.len()].copy_from_slice(rest);
-        self.blend(simd, &mut block);
-        rest.copy_from_slice(&block[..rest.len()]);
+        change_block::<SIZE>(
+            rest,
+            4 * count,
+            #[inline(always)]
+            |block| self.blend(simd, block),
+        );
     }
 }
 

@@ -9,7 +9,7 @@ use fearless_simd::{
 
 use super::Sink;
 use super::dither::{Layout, PATTERN, thresholds};
-use super::lanes::last_block;
+use super::lanes::{change_block, last_block};
 
 /// Writes densities as 8-bit coverage, which adds up.
 pub(crate) struct A8<'a> {
@@ -105,14 +105,12 @@ fn add<S: Simd>(simd: S, block: &mut [u8; PIXELS], coverage: u8x32<S>) {
 fn add_rest<S: Simd>(simd: S, rest: &mut [u8], count: usize, coverage: u8x32<S>) {
     let within = u8x32::from_slice(simd, &NUMBERS).simd_lt(u8x32::splat(simd, count as u8));
     let coverage = within.select(coverage, u8x32::splat(simd, 0));
-    if let Some(block) = rest.first_chunk_mut() {
-        add(simd, block, coverage);
-        return;
-    }
-    let (mut block, rest) = ([0; PIXELS], &mut rest[..count]);
-    block[..count].copy_from_slice(rest);
-    add(simd, &mut block, coverage);
-    rest.copy_from_slice(&block[..count]);
+    change_block(
+        rest,
+        count,
+        #[inline(always)]
+        |block| add(simd, block, coverage),
+    );
 }
 
 /// How densities are rounded, along a row.

@@ -37,3 +37,21 @@ pub(crate) fn last_block<const SIZE: usize>(
     block[..count].copy_from_slice(&last[..count]);
     block
 }
+
+/// Changes the first `count` bytes of `rest` as a block, of which `change` leaves all behind them as they are: in their place, or as a
+/// copy where the block does not fit.
+#[inline(always)]
+pub(crate) fn change_block<const SIZE: usize>(
+    rest: &mut [u8],
+    count: usize,
+    change: impl FnOnce(&mut [u8; SIZE]),
+) {
+    if let Some(block) = rest.first_chunk_mut() {
+        change(block);
+        return;
+    }
+    let (mut block, rest) = ([0; SIZE], &mut rest[..count]);
+    block[..count].copy_from_slice(rest);
+    change(&mut block);
+    rest.copy_from_slice(&block[..count]);
+}

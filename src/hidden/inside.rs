@@ -138,8 +138,8 @@ impl Inside {
     }
 }
 
-/// The largest whole number not above `x`.
-fn floor(x: f64) -> i32 {
+/// The largest whole number not above `x`. The function for it is a call where a level has no instruction.
+pub(super) fn floor(x: f64) -> i32 {
     let whole = x as i32;
     whole - i32::from(f64::from(whole) > x)
 }
