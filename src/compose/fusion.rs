@@ -230,6 +230,8 @@ impl Sink for Pass<'_> {
                 let held = of(&columns).iter().map(|&density| self.by.alone(density));
                 self.row.clear();
                 self.row.extend(held);
+                // Behind them so many that the last ones are read as a whole block.
+                self.row.resize(columns.len() + LANES, 0.0);
                 self.sink.values(rows, columns, self.row);
             }
         }

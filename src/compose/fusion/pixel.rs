@@ -223,8 +223,13 @@ impl Pixels {
 
     /// The next pixels that see the same casts, several of which hide a part of the disc.
     pub(super) fn next_shared(&self, at: Range<usize>) -> Option<(Seen, Range<usize>)> {
-        let mut pixels = self.seen[at.clone()].iter();
-        let start = at.start + pixels.position(|seen| seen.partial() > 1)?;
+        let is_shared = |seen: &Seen| seen.partial() > 1;
+        // A block at once: most pixels are not.
+        let any_shared =
+            |block: &[Seen]| block.iter().fold(false, |any, seen| any | is_shared(seen));
+        let first = self.seen[at.clone()].chunks(LANES).position(any_shared)?;
+        let start = at.start + first * LANES;
+        let start = start + self.seen[start..at.end].iter().position(is_shared)?;
         let seen = self.seen[start];
         let same = self.seen[start..at.end].iter();
         Some((
