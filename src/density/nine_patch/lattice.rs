@@ -242,16 +242,17 @@ impl Steps {
     /// at that circle's centre that cubics between few rows do not hold, the less the more such centres are in one place.
     fn new(shape: &Rounded, radius: f64, levels: f64) -> Self {
         let steps = ROWS * cubic::steps(levels);
-        let near = |distance: f64| distance.abs() < 4.0 * radius / steps;
+        let near = |distance: f64, rows: f64| distance.abs() < rows * radius / steps;
+        let meet = |distance: f64| near(distance, 7.0);
         let size = shape.max - shape.min;
         let [tl, tr, br, bl] = shape.radii;
         let tips = shape.radii.map(|corner| tip(corner / radius));
-        let across = near(size.x - tl - tr) || near(size.x - bl - br);
-        let down = near(size.y - tl - bl) || near(size.y - tr - br);
+        let across = meet(size.x - tl - tr) || meet(size.x - bl - br);
+        let down = meet(size.y - tl - bl) || meet(size.y - tr - br);
         let together = [1.0, 2.0, 4.0][usize::from(across) + usize::from(down)];
         let tip = tips.into_iter().fold(0.0, f64::max) / levels * together;
         let [columns, rows] = [size.x, size.y].map(|size| {
-            let ends = if near(size - 2.0 * radius) { 2.0 } else { 1.0 };
+            let ends = if near(size - 2.0 * radius, 4.0) { 2.0 } else { 1.0 };
             ROWS * cubic::steps(levels / ends)
         });
         let has_tips = tip > WORTH * rows;
@@ -284,7 +285,7 @@ fn tips(shape: &Rounded, radius: f64) -> impl Iterator<Item = f64> + Clone {
 fn tip(ratio: f64) -> f64 {
     if (0.8..1.35).contains(&ratio) {
         20.0
-    } else if (0.5..1.45).contains(&ratio) {
+    } else if (0.45..1.45).contains(&ratio) {
         13.0
     } else {
         0.0
