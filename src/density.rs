@@ -17,6 +17,7 @@ pub(crate) mod nine_patch;
 pub(crate) mod quadrature;
 pub(crate) mod rounded;
 pub(crate) mod rows;
+pub(crate) mod runs;
 mod sampling;
 pub(crate) mod tiles;
 pub(crate) mod tilted;
@@ -28,6 +29,7 @@ use fearless_simd::dispatch;
 use glam::DVec2;
 
 use self::frame::Frame;
+use self::runs::Run;
 use crate::grid::Grid;
 use crate::hidden::Hidden;
 use crate::plan::{self, Method};
@@ -64,6 +66,13 @@ pub(crate) trait Sink {
     /// The densities of some columns, the same in each of some rows, at least as many as columns: those behind them count for nothing,
     /// but where there are enough of them they save a copy.
     fn values(&mut self, rows: Range<u32>, columns: Range<u32>, densities: &[f32]);
+
+    /// The densities of many runs.
+    fn runs(&mut self, runs: &[Run], densities: &[f32]) {
+        for (Run { row, columns }, densities) in runs::each(runs, densities) {
+            self.values(*row..*row + 1, columns.clone(), densities);
+        }
+    }
 }
 
 /// Calls `put` for each pixel that is given a density.

@@ -10,6 +10,7 @@ use crate::compose::Fusion;
 use crate::density::grid::GridScratch;
 use crate::density::nine_patch::NinePatchScratch;
 use crate::density::rows::{BAND, Bands, Rows};
+use crate::density::runs::Runs;
 use crate::hidden::inside::Inside;
 use crate::mesh::MeshCache;
 use crate::mesh::halving::HalvingScratch;
@@ -32,8 +33,8 @@ pub struct Scratch {
     pub(crate) bands: Bands,
     pub(crate) nine_patch: NinePatchScratch,
     pub(crate) grid: GridScratch,
-    /// The densities of some pixels of a row.
-    pub(crate) values: Vec<f32>,
+    /// Densities that a sink is yet to be given.
+    pub(crate) runs: Runs,
     pub(crate) inside: Inside,
     pub(crate) fusion: Fusion,
     pub(crate) halving: HalvingScratch,
@@ -67,7 +68,7 @@ impl Scratch {
             bands: Bands::default(),
             nine_patch: NinePatchScratch::default(),
             grid: GridScratch::default(),
-            values: Vec::new(),
+            runs: Runs::default(),
             inside: Inside::default(),
             fusion: Fusion::default(),
             halving: HalvingScratch::default(),

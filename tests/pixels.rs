@@ -291,23 +291,62 @@ fn cards_with_tips_keep_their_tolerance() {
             least + random.between(0.0, most)
         });
         let [x, y] = [0, 1].map(|_| 2.0 * radius + 3.0 + random.between(0.0, 1.0));
-        let card = Shape::rounded_rect(x, y, w, h, radii).unwrap();
-        let light = Light::directional([0.0, 0.0], radius).unwrap();
-        let shadow = light.cast(&card, 1.0, 0.0).unwrap();
-        let size = [w, h].map(|side| (side + 4.0 * radius) as u32 + 8);
-        let grid = Grid::new([0.0, 0.0], size, 1.0).unwrap();
-        let mut drawn = |method, levels| {
-            let tolerance = Tolerance::levels(levels).unwrap();
-            let options = PixelOptions {
-                tolerance,
-                ..by(Some(method))
-            };
-            densities(&shadow, &grid, &options, &mut scratch)
-        };
-        let direct = drawn(Method::Direct, 0.0625);
-        let error = worst_of(&direct, &drawn(Method::NinePatch, levels));
+        let error = error_of_card([x, y, w, h], radii, radius, levels, &mut scratch);
         let label = format!("seed {seed}: {w} x {h}, {radii:?}, r {radius}");
         let what = format!("tips, tolerance {levels}");
+        summary.add(what, error, levels - 0.0625, &label);
+    }
+    summary.finish();
+}
+
+/// What the nine-patch of a card is wrong by at a tolerance, in levels: within 0.0625 of it.
+fn error_of_card(
+    [x, y, w, h]: [f32; 4],
+    radii: [f32; 4],
+    radius: f32,
+    levels: f32,
+    scratch: &mut Scratch,
+) -> f32 {
+    let card = Shape::rounded_rect(x, y, w, h, radii).unwrap();
+    let light = Light::directional([0.0, 0.0], radius).unwrap();
+    let shadow = light.cast(&card, 1.0, 0.0).unwrap();
+    let size = [w, h].map(|side| (side + 4.0 * radius) as u32 + 8);
+    let grid = Grid::new([0.0, 0.0], size, 1.0).unwrap();
+    let mut drawn = |method, levels| {
+        let tolerance = Tolerance::levels(levels).unwrap();
+        let options = PixelOptions {
+            tolerance,
+            ..by(Some(method))
+        };
+        densities(&shadow, &grid, &options, scratch)
+    };
+    let direct = drawn(Method::Direct, 0.0625);
+    worst_of(&direct, &drawn(Method::NinePatch, levels))
+}
+
+/// The right half of a card is drawn from its left half, where both are alike: between its columns, or as a copy where the card's middle
+/// is on half pixels. As many as `PENUMBRAL_CASES` says from seed `PENUMBRAL_SEED` on.
+#[test]
+fn cards_alike_left_and_right_keep_their_tolerance() {
+    let (mut scratch, mut summary) = (Scratch::new(), Summary::default());
+    let first = setting("PENUMBRAL_SEED", 0);
+    for seed in first..first + setting("PENUMBRAL_CASES", 200) {
+        let random = &mut Random::new(seed as u64);
+        let radius = 3.0 + 40.0 * random.between(0.0, 1.0) * random.between(0.0, 1.0);
+        let levels = random.pick(&[0.5, 1.0, 1.0, 2.0, 4.0]);
+        let mut corner = || random.pick(&[0.0, 1.0, 1.0, 4.0]) * radius * random.between(0.0, 1.0);
+        let [upper, lower] = [corner(), corner()];
+        let least = 2.0 * (upper.max(lower) + radius) + 4.0;
+        let [w, h] = [least, 2.0 * upper.max(lower)].map(|least| {
+            let most = random.pick(&[1.0, 2.0 * radius]);
+            least + random.between(0.0, most)
+        });
+        let [x, y] = [0, 1].map(|_| 2.0 * radius + 3.0 + random.between(0.0, 1.0));
+        let x = random.pick(&[x, (2.0 * x + w).round() / 2.0 - w / 2.0]);
+        let radii = [upper, upper, lower, lower];
+        let error = error_of_card([x, y, w, h], radii, radius, levels, &mut scratch);
+        let label = format!("seed {seed}: {w} x {h}, {radii:?} at {x}, {y}, r {radius}");
+        let what = format!("alike, tolerance {levels}");
         summary.add(what, error, levels - 0.0625, &label);
     }
     summary.finish();

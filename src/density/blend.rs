@@ -11,6 +11,7 @@ use fearless_simd::{
 use super::Sink;
 use super::dither::{Layout, thresholds};
 use super::lanes::{NUMBERS, change_block, last_block};
+use super::runs::{Run, each};
 use crate::paint::Paint;
 use crate::tone::Color;
 
@@ -70,6 +71,15 @@ impl Sink for Rgba8<'_> {
             } else {
                 ink.blend_values(simd, pixels, count, densities, (layout, y, first));
             }
+        });
+    }
+
+    fn runs(&mut self, runs: &[Run], densities: &[f32]) {
+        let (layout, ink) = (&self.layout, &self.ink);
+        dispatch!(self.level, simd => for (Run { row, columns }, densities) in each(runs, densities) {
+            let (y, first) = (*row, columns.start);
+            let pixels = from(self.pixels, layout, y, first);
+            ink.blend_values(simd, pixels, columns.len(), densities, (layout, y, first));
         });
     }
 }

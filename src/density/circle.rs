@@ -7,9 +7,10 @@ use core::ops::Range;
 use fearless_simd::{Simd, SimdBase, f32x16};
 use glam::DVec2;
 
-use super::frame::Frame;
+use super::frame::{Frame, whole_below};
 use super::lanes::{LANES, lanes};
 use super::rows::{self, Power};
+use super::runs::{Run, Runs};
 use super::{PixelOptions, Sink, seen_columns};
 use crate::grid::Grid;
 use crate::scratch::Scratch;
@@ -32,10 +33,8 @@ pub(crate) fn fill<S: Simd>(
         return;
     }
     let ratio = (max.x - min.x) / 2.0 * frame.scale / radius;
-    let (values, wanted) = (&mut scratch.values, &mut scratch.wanted);
-    // Whole vectors are written from any place on.
-    let most = (columns.end - columns.start) as usize;
-    values.resize(most.next_multiple_of(LANES) + LANES, 0.0);
+    let (runs, wanted) = (&mut scratch.runs, &mut scratch.wanted);
+    runs.begin((columns.end - columns.start) as usize);
     let within =
         |part: &Range<i64>, of: &Range<i64>| part.start.max(of.start)..part.end.min(of.end);
     let on_grid = |part: &Range<i64>| {
@@ -49,8 +48,10 @@ pub(crate) fn fill<S: Simd>(
     for line in lines {
         let down = line as f64 - center.y;
         let half_width = |reach: f64| (reach * reach - down * down).max(0.0).sqrt();
-        let around =
-            |half: f64| (center.x - half).ceil() as i64..(center.x + half).floor() as i64 + 1;
+        let around = |half: f64| {
+            let end = whole_below(center.x + half) + 1;
+            -whole_below(half - center.x)..end
+        };
         let reached = around(half_width(outer));
         let mut even = around(half_width(inner));
         if inner <= down.abs() || even.is_empty() {
@@ -58,45 +59,40 @@ pub(crate) fn fill<S: Simd>(
         }
         let row = (line - frame.first[1]) as u32;
         seen_columns(options.hidden, row, &frame, &columns, wanted);
+        let sides = [reached.start..even.start, even.end..reached.end];
         for wanted in wanted.iter() {
             let constant = within(&even, wanted);
             if !constant.is_empty() {
                 sink.constant(row..row + 1, on_grid(&constant), inside);
             }
+            for side in &sides {
+                let part = within(side, wanted);
+                if part.is_empty() {
+                    continue;
+                }
+                // From the side's own beginning on, so that what else is drawn changes nothing.
+                let seen = DVec2::new(center.x - side.start as f64, -down) / radius;
+                let power = Power::of(seen, ratio, 1.0 / radius, f32x16::splat(simd, 0.0));
+                let run = Run {
+                    row,
+                    columns: on_grid(&part),
+                };
+                place(
+                    simd,
+                    power,
+                    (part.start - side.start) as usize,
+                    runs.push(run),
+                );
+            }
         }
-        let sides = [reached.start..even.start, even.end..reached.end];
-        // Left and right of what is constant, one after the other, so that they fill whole vectors.
-        let parts = || {
-            let parts = wanted.iter().flat_map(|wanted| {
-                let of_side = |side: &Range<i64>| (side.start, within(side, wanted));
-                sides.iter().map(of_side)
-            });
-            parts.filter(|(_, part)| !part.is_empty())
-        };
-        let mut count = 0;
-        for (start, part) in parts() {
-            // From the side's own beginning on, so that what else is drawn changes nothing.
-            let seen = DVec2::new(center.x - start as f64, -down) / radius;
-            let power = Power::of(seen, ratio, 1.0 / radius, f32x16::splat(simd, 0.0));
-            let length = (part.end - part.start) as usize;
-            let powers = &mut values[count..][..length.next_multiple_of(LANES)];
-            place(simd, power, (part.start - start) as usize, powers);
-            count += length;
-        }
-        fill_all(
-            simd,
-            ratio as f32,
-            &mut values[..count.next_multiple_of(LANES)],
-        );
-        let mut values = &values[..];
-        for (_, part) in parts() {
-            sink.values(row..row + 1, on_grid(&part), values);
-            values = &values[(part.end - part.start) as usize..];
+        if runs.are_many() {
+            give(simd, ratio as f32, runs, sink);
         }
     }
+    give(simd, ratio as f32, runs, sink);
 }
 
-/// Places the powers of pixels from the one `skipped` after the first on.
+/// Places the powers of pixels from the one `skipped` after that which `power` counts from on.
 #[inline(always)]
 fn place<S: Simd>(simd: S, power: Power<S>, skipped: usize, powers: &mut [f32]) {
     simd.vectorize(
@@ -111,16 +107,18 @@ fn place<S: Simd>(simd: S, power: Power<S>, skipped: usize, powers: &mut [f32]) 
     );
 }
 
-/// Computes densities in the place of powers.
+/// Gives a sink the densities of runs whose powers are placed: they are computed at once, as a row of a small circle would fill few
+/// vectors.
 #[inline(always)]
-fn fill_all<S: Simd>(simd: S, radius: f32, values: &mut [f32]) {
+fn give<S: Simd>(simd: S, radius: f32, runs: &mut Runs, sink: &mut dyn Sink) {
     simd.vectorize(
         #[inline(always)]
         || {
-            for values in values.as_chunks_mut::<LANES>().0 {
+            for values in runs.values().as_chunks_mut::<LANES>().0 {
                 let power = f32x16::from_slice(simd, values);
                 rows::circle(simd, power, radius).store_slice(values);
             }
         },
     );
+    runs.give(sink);
 }

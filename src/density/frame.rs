@@ -52,3 +52,10 @@ impl Frame {
         point * self.scale - self.base
     }
 }
+
+/// The largest whole number not above `x`. The function for it is a call where a level has no instruction.
+#[inline(always)]
+pub(crate) fn whole_below(x: f64) -> i64 {
+    let whole = x as i64;
+    whole - i64::from(whole as f64 > x)
+}

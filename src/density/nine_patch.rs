@@ -10,6 +10,7 @@
 mod columns;
 mod kernel;
 mod lattice;
+mod mirror;
 mod nodes;
 mod reach;
 
@@ -19,10 +20,12 @@ use fearless_simd::Simd;
 
 use self::kernel::LIKE_SQUARE;
 use self::lattice::{Cell, Lattice};
+use self::mirror::{BEFORE, BEHIND, Mirror};
 use self::nodes::Nodes;
 use self::reach::{BLOCK, Reach};
 use super::frame::Frame;
 use super::rounded::Rounded;
+use super::runs::Run;
 use super::{PixelOptions, Sink, averaged_side, cubic, reach, seen_columns};
 use crate::grid::Grid;
 use crate::scratch::Scratch;
@@ -76,6 +79,8 @@ pub(crate) fn suited(shadow: &Shadow, per_unit: f64) -> Option<Rounded> {
 pub(crate) struct NinePatchScratch {
     nodes: Nodes,
     zones: [Zone; 2],
+    /// How the second zone is the first one's likeness, if it is.
+    mirror: Option<Mirror>,
     /// Columns of a row where they are some pixels apart.
     columns: [Vec<f32>; 2],
 }
@@ -85,6 +90,8 @@ pub(crate) struct NinePatchScratch {
 struct Zone {
     start: i64,
     end: i64,
+    /// How many of them are kept: some more, that others are the likeness of.
+    width: usize,
     /// Whether its discs may meet the left side, and the right one.
     met: [bool; 2],
     /// Where the sides are without corners, counted from the first column.
@@ -97,8 +104,6 @@ struct Zone {
     /// The cell that pixels were last asked for in, and the blocks for which all of its rows are there.
     cell: [i64; 4],
     ready: Range<usize>,
-    /// The pixels' densities where rows are apart.
-    values: Vec<f32>,
 }
 
 /// Rows that are kept: among them the four that a pixel is interpolated from, of which every second may be left out.
@@ -134,7 +139,12 @@ pub(crate) fn fill<S: Simd>(
     if columns.is_empty() {
         return;
     }
-    let (kept, wanted) = (&mut scratch.nine_patch, &mut scratch.wanted);
+    let (kept, wanted, runs) = (
+        &mut scratch.nine_patch,
+        &mut scratch.wanted,
+        &mut scratch.runs,
+    );
+    runs.begin((columns.end - columns.start) as usize);
     let levels = options.tolerance.as_levels();
     let lattice = Lattice::new(&shape, radius, levels, frame.phase.y);
     kept.nodes.begin(&shape, radius, levels);
@@ -171,13 +181,31 @@ pub(crate) fn fill<S: Simd>(
                     let (start, end) = (wanted.start.max(first), wanted.end.min(last));
                     if start < end {
                         let part = (start - first) as usize..(end - first) as usize;
-                        let densities = kept.row(simd, zone, &cell, &lattice, part);
-                        sink.values(rows.clone(), column(start)..column(end), densities);
+                        let columns = column(start)..column(end);
+                        kept.compute(simd, zone, &cell, &lattice, &part);
+                        let row =
+                            |row: i64| &kept.zones[zone].rows[slot(row)][BEFORE + part.start..];
+                        if let [only] = cell.distinct() {
+                            sink.values(rows.clone(), columns, row(*only));
+                            continue;
+                        }
+                        for number in rows.clone() {
+                            let run = Run {
+                                row: number,
+                                columns: columns.clone(),
+                            };
+                            let to = runs.push(run);
+                            cubic::between(simd, cell.rows.map(row), cell.weights, to);
+                        }
                     }
                 }
             }
         }
+        if runs.are_many() {
+            runs.give(sink);
+        }
     }
+    runs.give(sink);
 }
 
 impl NinePatchScratch {
@@ -200,74 +228,95 @@ impl NinePatchScratch {
             zone.met = [!apart || index == 0, !apart || index == 1];
             zone.sides = [shape.min.x, shape.max.x].map(|x| (x - zone.start as f64) as f32);
             (zone.which, zone.cell) = ([NONE; RING], [NONE; 4]);
-            let width = ((zone.end - zone.start) as usize).next_multiple_of(2 * BLOCK);
+            zone.width = (zone.end - zone.start) as usize + BEHIND;
+            // From any column on whole vectors are read.
+            let length = zone.width.next_multiple_of(2 * BLOCK) + BLOCK;
             for row in &mut zone.rows {
-                row.resize(width, 0.0);
+                row.resize(BEFORE + length, 0.0);
             }
-            zone.values.resize(width, 0.0);
         }
-        let widest = self.zones.iter().map(|zone| zone.values.len()).max();
+        let first = [0, 1].map(|zone: usize| self.zones[zone].start);
+        self.mirror = Mirror::new(lattice, first).filter(|_| apart);
+        let widest = self.zones.iter().map(|zone| zone.rows[0].len()).max();
         lattice
             .columns
             .resize(&mut self.columns, widest.unwrap_or(0));
         if apart { 2 } else { 1 }
     }
 
-    /// The densities of some columns of a zone, counted from its first, and of what columns follow, in a cell of the lattice.
-    #[inline(always)]
-    fn row<S: Simd>(
-        &mut self,
-        simd: S,
-        zone: usize,
-        cell: &Cell,
-        lattice: &Lattice,
-        part: Range<usize>,
-    ) -> &[f32] {
-        let blocks = part.start / BLOCK..part.end.div_ceil(BLOCK);
-        let kept = &self.zones[zone];
-        let is_ready = kept.cell == cell.rows
-            && kept.ready.start <= blocks.start
-            && blocks.end <= kept.ready.end;
-        if !is_ready {
-            for row in cell.distinct() {
-                self.compute(simd, zone, *row, lattice, blocks.clone());
-            }
-            let kept = &mut self.zones[zone];
-            (kept.cell, kept.ready) = (cell.rows, blocks.clone());
-        }
-        let zone = &mut self.zones[zone];
-        let [a, b, c, d] = cell.rows.map(slot);
-        if let [_] = cell.distinct() {
-            return &zone.rows[a][part.start..];
-        }
-        let columns = blocks.start * BLOCK..blocks.end * BLOCK;
-        let rows = [
-            &zone.rows[a][columns.clone()],
-            &zone.rows[b][columns.clone()],
-            &zone.rows[c][columns.clone()],
-            &zone.rows[d][columns.clone()],
-        ];
-        cubic::between(simd, rows, cell.weights, &mut zone.values[columns]);
-        &zone.values[part.start..]
-    }
-
-    /// Computes some blocks of a row of the lattice, as far as they are not there.
+    /// Computes some columns of a zone, counted from its first, of all rows that a cell takes, as far as they are not there.
     #[inline(always)]
     fn compute<S: Simd>(
         &mut self,
         simd: S,
         zone: usize,
+        cell: &Cell,
+        lattice: &Lattice,
+        part: &Range<usize>,
+    ) {
+        let kept = &self.zones[zone];
+        let is_ready =
+            kept.cell == cell.rows && kept.ready.start <= part.start && part.end <= kept.ready.end;
+        if is_ready {
+            return;
+        }
+        for &row in cell.distinct() {
+            match self.mirror.filter(|_| zone == 1) {
+                Some(mirror) => self.reflect_row(simd, &mirror, row, lattice, part),
+                None => self.compute_row(simd, zone, row, lattice, part),
+            }
+        }
+        let kept = &mut self.zones[zone];
+        (kept.cell, kept.ready) = (cell.rows, part.clone());
+    }
+
+    /// Computes some columns of a row of the second zone from the first one's, if they are not there.
+    #[inline(always)]
+    fn reflect_row<S: Simd>(
+        &mut self,
+        simd: S,
+        mirror: &Mirror,
         row: i64,
         lattice: &Lattice,
-        blocks: Range<usize>,
+        part: &Range<usize>,
+    ) {
+        let slot = slot(row);
+        let right = &mut self.zones[1];
+        let done = &mut right.done[slot];
+        let mut part = part.clone();
+        if right.which[slot] == row {
+            if done.start <= part.start && part.end <= done.end {
+                return;
+            }
+            part = done.start.min(part.start)..done.end.max(part.end);
+        }
+        right.which[slot] = row;
+        *done = part.clone();
+        self.compute_row(simd, 0, row, lattice, &mirror.needs(&part));
+        let [left, right] = self
+            .zones
+            .each_mut()
+            .map(|zone| zone.rows[slot].as_mut_slice());
+        let right = &mut right[BEFORE..];
+        simd.vectorize(
+            #[inline(always)]
+            || mirror.fill(simd, left, &part, right),
+        );
+    }
+
+    /// Computes some columns of a row of the lattice, as far as they are not there.
+    #[inline(always)]
+    fn compute_row<S: Simd>(
+        &mut self,
+        simd: S,
+        zone: usize,
+        row: i64,
+        lattice: &Lattice,
+        part: &Range<usize>,
     ) {
         let zone = &mut self.zones[zone];
-        let slot = slot(row);
-        let done = &mut zone.done[slot];
-        if zone.which[slot] != row {
-            zone.which[slot] = row;
-            *done = blocks.start..blocks.start;
-        } else if done.start <= blocks.start && blocks.end <= done.end {
+        let missing = zone.missing(row, &(part.start / BLOCK..part.end.div_ceil(BLOCK)));
+        if missing.iter().all(Range::is_empty) {
             return;
         }
         self.nodes.place(simd, &lattice.shape, lattice.y(row));
@@ -278,22 +327,35 @@ impl NinePatchScratch {
             sides: zone.sides.map(|side| side - lattice.columns.start()),
             pitch: lattice.columns.pitch(),
         };
-        let columns = lattice.columns;
+        let (columns, slot) = (lattice.columns, slot(row));
+        let pixels = &mut zone.rows[slot][BEFORE..];
         if !columns.are_pixels() {
-            let width = (zone.end - zone.start) as usize;
-            let count = columns.count(width).div_ceil(BLOCK);
+            let count = columns.count(zone.width).div_ceil(BLOCK);
             reach.compute_all(simd, 0..count, &mut self.columns[0]);
-            columns.spread(simd, &mut self.columns, &mut zone.rows[slot]);
-            *done = 0..usize::MAX;
+            columns.spread(simd, &mut self.columns, pixels);
+            zone.done[slot] = 0..usize::MAX;
             return;
         }
-        let before = blocks.start..done.start;
-        let behind = done.end..blocks.end;
-        for missing in [before, behind] {
+        for missing in missing {
             if !missing.is_empty() {
-                reach.compute_all(simd, missing, &mut zone.rows[slot]);
+                reach.compute_all(simd, missing, pixels);
             }
         }
-        *done = done.start.min(blocks.start)..done.end.max(blocks.end);
+    }
+}
+
+impl Zone {
+    /// The blocks of a row that are missing of some wanted ones, before and behind those that are there: they are there from now on.
+    #[inline(always)]
+    fn missing(&mut self, row: i64, wanted: &Range<usize>) -> [Range<usize>; 2] {
+        let slot = slot(row);
+        let done = &mut self.done[slot];
+        if self.which[slot] != row {
+            self.which[slot] = row;
+            *done = wanted.start..wanted.start;
+        }
+        let missing = [wanted.start..done.start, done.end..wanted.end];
+        *done = done.start.min(wanted.start)..done.end.max(wanted.end);
+        missing
     }
 }

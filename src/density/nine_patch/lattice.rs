@@ -3,6 +3,7 @@
 use core::ops::Range;
 
 use super::columns::Columns;
+use crate::density::frame::whole_below;
 use crate::density::rounded::Rounded;
 use crate::density::{cubic, reach};
 
@@ -20,8 +21,9 @@ pub(super) struct Lattice {
     /// Every so manyth of them is enough, a power of two, except where corners' circles have tips.
     step: i64,
     tips: Range<f64>,
-    /// The columns that are computed of a row.
+    /// The columns that are computed of a row, and whether pixels are near enough to each other for cubics between them.
     pub(super) columns: Columns,
+    pub(super) are_columns_near: bool,
     /// Rows after `straight` up to so many more are like it: they are left out.
     straight: i64,
     alike: i64,
@@ -60,6 +62,7 @@ impl Lattice {
             (true, false) => (-phase - 0.5, None),
             (false, _) => (0.0, None),
         };
+        let apart = radius / (CLOSER * steps.columns);
         let mut lattice = Self {
             shape: *shape,
             reach,
@@ -68,7 +71,8 @@ impl Lattice {
             is_apart,
             step,
             tips: 0.0..0.0,
-            columns: Columns::apart(radius / (CLOSER * steps.columns)),
+            columns: Columns::apart(apart),
+            are_columns_near: apart >= 1.0,
             mirror,
             straight: 0,
             alike: 0,
@@ -157,10 +161,7 @@ impl Lattice {
         } else {
             self.step
         };
-        // The function for it is a call where a level has no instruction.
-        let whole = place as i64;
-        let row = whole - i64::from(whole as f64 > place);
-        let row = row & -step;
+        let row = whole_below(place) & -step;
         let share = (place - row as f64) / step as f64;
         if self.is_apart {
             Cell {
@@ -252,7 +253,11 @@ impl Steps {
         let together = [1.0, 2.0, 4.0][usize::from(across) + usize::from(down)];
         let tip = tips.into_iter().fold(0.0, f64::max) / levels * together;
         let [columns, rows] = [size.x, size.y].map(|size| {
-            let ends = if near(size - 2.0 * radius, 4.0) { 2.0 } else { 1.0 };
+            let ends = if near(size - 2.0 * radius, 4.0) {
+                2.0
+            } else {
+                1.0
+            };
             ROWS * cubic::steps(levels / ends)
         });
         let has_tips = tip > WORTH * rows;
