@@ -188,17 +188,18 @@ fn fewest(shadow: &Shadow, tolerance: f32, rounds: usize) -> usize {
     best
 }
 
-/// The fewest triangles that searches have found so far within one level.
-const FOUND: [(&str, f32, usize); 9] = [
-    ("triangle", 1.2, 328),
-    ("L", 0.8, 646),
-    ("star", 1.0, 997),
-    ("heart", 1.2, 871),
-    ("heart", 5.0, 293),
-    ("circle", 3.6, 270),
-    ("circle", 8.0, 84),
-    ("ring", 0.6, 2062),
-    ("ring", 2.5, 668),
+/// The fewest triangles that searches have found so far, within a tolerance in levels.
+const FOUND: [(&str, f32, f32, usize); 10] = [
+    ("triangle", 1.2, 1.0, 328),
+    ("L", 0.8, 1.0, 646),
+    ("star", 1.0, 1.0, 997),
+    ("heart", 1.2, 1.0, 871),
+    ("heart", 5.0, 1.0, 293),
+    ("circle", 3.6, 1.0, 270),
+    ("circle", 8.0, 1.0, 84),
+    ("ring", 0.6, 1.0, 2062),
+    ("ring", 2.5, 1.0, 668),
+    ("ring", 0.6, 4.0, 485),
 ];
 
 /// How many times as many meshes may have.
@@ -210,22 +211,22 @@ const USUAL: usize = 3;
 #[test]
 fn meshes_have_at_most_so_many_times_the_fewest_triangles() {
     let shapes = shapes();
-    for (name, radius, found) in FOUND {
+    for (name, radius, tolerance, found) in FOUND {
         let (_, shape, _) = shapes.iter().find(|(other, ..)| *other == name).unwrap();
         let shadow = cast(shape, radius);
-        let mesh = shadow.mesh(few(1.0));
+        let mesh = shadow.mesh(few(tolerance));
         sanity_check(&mesh);
         assert!(
-            dense_error(&shadow, &mesh, 6) <= 1.0,
+            dense_error(&shadow, &mesh, 6) <= f64::from(tolerance),
             "{name} at r {radius}"
         );
         let times = mesh.triangles().count() as f64 / found as f64;
-        println!("{name} at r {radius}: {times:.2} times the {found} found");
+        println!("{name} at r {radius} within {tolerance}: {times:.2} times the {found} found");
         assert!(times <= TIMES, "{name}: {times}");
     }
-    for (name, radius, found) in &FOUND[..USUAL] {
+    for (name, radius, tolerance, found) in &FOUND[..USUAL] {
         let (_, shape, _) = shapes.iter().find(|(other, ..)| other == name).unwrap();
-        let mesh = cast(shape, *radius).mesh(levels(1.0));
+        let mesh = cast(shape, *radius).mesh(levels(*tolerance));
         let times = mesh.triangles().count() as f64 / *found as f64;
         println!("{name} at r {radius}, as usual: {times:.2} times");
         assert!(times <= TIMES, "{name}: {times}");

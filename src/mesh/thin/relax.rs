@@ -1,9 +1,10 @@
-//! Fewer triangles still, for longer: between rounds of thinning vertices move to where the triangles about them are less wrong, so that
-//! more sides can go.
+//! Fewer triangles still, for longer: between rounds of thinning vertices move to where the triangles about them are less wrong, and sides
+//! turn in the squares that they are across, so that more sides can go. Vertices on the penumbra's edges move as well: of a circle's
+//! chords some lie inside of it then and some reach out, and there are fewer.
 
 use glam::DVec2;
 
-use super::{Fit, LARGE_CUT, LOST, Opposite, Place, Thinning};
+use super::{Corner, Fit, GONE, LARGE_CUT, LOST, Opposite, Place, Thinning, Triangle};
 use crate::mesh::regions::Region;
 
 /// Rounds at most, and the part of the triangles that each has to take away for another.
@@ -29,9 +30,13 @@ impl Thinning<'_> {
         for _ in 0..ROUNDS {
             let before = self.triangles().count() as f64;
             for vertex in 0..self.corners.len() {
-                if self.place(vertex) == Place::Inside && self.bears(vertex) {
-                    self.relax(vertex);
+                let place = self.place(vertex);
+                if place != Place::Fixed && self.bears(vertex) {
+                    self.relax(vertex, place);
                 }
+            }
+            for index in 0..self.triangles.len() {
+                self.flip_sides(index);
             }
             for corner in &mut self.corners {
                 corner.fresh = true;
@@ -54,22 +59,73 @@ impl Thinning<'_> {
     }
 
     /// Moves a vertex to where the triangles about it are less wrong.
-    fn relax(&mut self, vertex: usize) {
+    fn relax(&mut self, vertex: usize, place: Place) {
         let sides: Vec<Opposite> = self.star(vertex).collect();
-        let mut best = self.energy(sides.iter().map(|&(index, _)| self.triangles[index].error));
+        let penumbra = sides
+            .iter()
+            .map(|&(index, _)| &self.triangles[index])
+            .filter(|triangle| triangle.region == Region::Penumbra);
+        let mut best = self.energy(penumbra.map(|triangle| triangle.error));
         let at = self.corners[vertex].at;
         let length = |&(_, [other, _]): &Opposite| (self.corners[other].at - at).length();
         let shortest = sides.iter().map(length).fold(f64::INFINITY, f64::min);
-        let mut found = self.try_at(at, &sides, &mut best);
+        let mut found = match place {
+            Place::Inside => self.try_at(vertex, place, at, &sides, &mut best),
+            _ => None,
+        };
         for step in STEPS {
             for way in WAYS {
                 let to = at + DVec2::from(way) * (step * shortest);
-                found = self.try_at(to, &sides, &mut best).or(found);
+                found = self.try_at(vertex, place, to, &sides, &mut best).or(found);
             }
         }
         if let Some(fit) = found {
             self.move_to(vertex, &sides, fit);
         }
+    }
+
+    /// Turns sides of a triangle in the squares that they are across, where both triangles are less wrong then.
+    fn flip_sides(&mut self, index: usize) {
+        for side in 0..3 {
+            let Triangle {
+                corners, region, ..
+            } = self.triangles[index];
+            if corners == GONE || region != Region::Penumbra {
+                return;
+            }
+            let [a, from, to] = [0, 1, 2].map(|step| corners[(side + step) % 3]);
+            let beside = self.star(from).find(|&(_, [_, last])| last == to);
+            // Each side is tried once.
+            if let Some((other, [b, _])) = beside
+                && index < other
+                && self.triangles[other].region == Region::Penumbra
+            {
+                self.flip([index, other], [a, b], [from, to]);
+            }
+        }
+    }
+
+    /// Puts a side between two vertices in place of the one between two others, if both triangles are less wrong then.
+    fn flip(&mut self, pair: [usize; 2], [a, b]: [usize; 2], [from, to]: [usize; 2]) {
+        let before = self.energy(pair.into_iter().map(|index| self.triangles[index].error));
+        let [first, second] = pair;
+        let sides = [(first, [from, b]), (second, [b, to])];
+        let Corner { at, density, .. } = self.corners[a];
+        let Some(fit) = self.fit(at, Some(density), &sides) else {
+            return;
+        };
+        let after = self.energy(fit.assessments.iter().flatten().map(|found| found.error));
+        if after >= before {
+            return;
+        }
+        for ((index, [p, q]), assessment) in sides.into_iter().zip(fit.assessments) {
+            self.triangles[index].corners = [a, p, q];
+            self.triangles[index].note(assessment);
+        }
+        self.corners[to].around.retain(|&index| index != first);
+        self.corners[from].around.retain(|&index| index != second);
+        self.corners[a].around.push(second);
+        self.corners[b].around.push(first);
     }
 
     /// What triangles are wrong by, which is to be lowered: the worst count most.
@@ -78,17 +134,57 @@ impl Thinning<'_> {
         errors.map(|error| share(error) * share(error)).sum()
     }
 
-    /// What a vertex may be at a place, if that is better than the best so far.
-    fn try_at(&mut self, at: DVec2, sides: &[Opposite], best: &mut f64) -> Option<Fit> {
-        let fit = self.fit(at, None, sides)?;
+    /// What a vertex may be elsewhere, if that is better than the best so far.
+    fn try_at(
+        &mut self,
+        vertex: usize,
+        place: Place,
+        to: DVec2,
+        sides: &[Opposite],
+        best: &mut f64,
+    ) -> Option<Fit> {
+        let forced = match place {
+            Place::Edge(_) => Some(self.corners[vertex].density),
+            _ => None,
+        };
+        let fit = self.fit(to, forced, sides)?;
         let energy = self.energy(fit.assessments.iter().flatten().map(|found| found.error));
-        (energy < *best).then(|| {
-            *best = energy;
-            fit
-        })
+        if energy >= *best {
+            return None;
+        }
+        let fit = match place {
+            Place::Edge(ends) => self.leave(vertex, ends, fit)?,
+            _ => fit,
+        };
+        *best = energy;
+        Some(fit)
+    }
+
+    /// The same if what the penumbra loses where an edge's vertex moves is flat enough.
+    fn leave(&mut self, vertex: usize, ends: [usize; 2], mut fit: Fit) -> Option<Fit> {
+        let [before, next] = ends.map(|v| self.corners[v].at);
+        let Corner { at, density, .. } = self.corners[vertex];
+        for corners in [[before, at, fit.at], [at, next, fit.at]] {
+            let [a, b, c] = corners;
+            let area = 0.5 * (b - a).perp_dot(c - a);
+            if area <= 0.0 {
+                continue;
+            }
+            let found = self
+                .measure
+                .assess(corners, [density; 3], [false; 3], true, self.most_cut);
+            if found.most > self.most_cut {
+                return None;
+            }
+            fit.cut = fit.cut.max(found.exact_error);
+            fit.lost += area * found.exact_error;
+        }
+        (fit.lost <= self.spare).then_some(fit)
     }
 
     fn move_to(&mut self, vertex: usize, sides: &[Opposite], fit: Fit) {
+        self.cut = self.cut.max(fit.cut);
+        self.spare -= fit.lost;
         for (&(index, _), assessment) in sides.iter().zip(fit.assessments) {
             self.triangles[index].note(assessment);
         }
