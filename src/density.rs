@@ -67,7 +67,7 @@ pub(crate) trait Sink {
     /// but where there are enough of them they save a copy.
     fn values(&mut self, rows: Range<u32>, columns: Range<u32>, densities: &[f32]);
 
-    /// The densities of many runs.
+    /// The densities of many runs, one after another.
     fn runs(&mut self, runs: &[Run], densities: &[f32]) {
         for (Run { row, columns }, densities) in runs::each(runs, densities) {
             self.values(*row..*row + 1, columns.clone(), densities);

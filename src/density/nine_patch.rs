@@ -3,7 +3,8 @@
 //! What a chord of the disc covers of a rounded rectangle is closed form in the x of the two sides at its height. Those are
 //! found once for a row, at a few heights of the disc, whatever the corners' radii; a pixel takes a few operations for each.
 //! Columns between the corners have one density a row, rows between them are all alike. Rows and columns are computed some
-//! pixels apart where the penumbra is wide, with cubics between, and one half of the rows serves the other.
+//! pixels apart where the penumbra is wide, with cubics between, and one half of the rows serves the other, as the left half of the
+//! columns does the right one.
 //!
 //! Error: that of the heights and of the cubics, kept within the tolerance by their number.
 
@@ -99,9 +100,9 @@ struct Zone {
     /// The last rows that were computed, and which they are: [`NONE`] of the lattice's at first.
     rows: [Vec<f32>; RING],
     which: [i64; RING],
-    /// The blocks of them that were computed.
+    /// The blocks of them that were computed; of a likeness, the columns.
     done: [Range<usize>; RING],
-    /// The cell that pixels were last asked for in, and the blocks for which all of its rows are there.
+    /// The cell that pixels were last asked for in, and the columns for which all of its rows are there.
     cell: [i64; 4],
     ready: Range<usize>,
 }
@@ -280,18 +281,12 @@ impl NinePatchScratch {
         lattice: &Lattice,
         part: &Range<usize>,
     ) {
-        let slot = slot(row);
-        let right = &mut self.zones[1];
-        let done = &mut right.done[slot];
-        let mut part = part.clone();
-        if right.which[slot] == row {
-            if done.start <= part.start && part.end <= done.end {
-                return;
-            }
-            part = done.start.min(part.start)..done.end.max(part.end);
+        let (slot, right) = (slot(row), &mut self.zones[1]);
+        if right.missing(row, part).iter().all(Range::is_empty) {
+            return;
         }
-        right.which[slot] = row;
-        *done = part.clone();
+        // With what was there before: whole vectors reach into it, and its left columns may be gone.
+        let part = right.done[slot].clone();
         self.compute_row(simd, 0, row, lattice, &mirror.needs(&part));
         let [left, right] = self
             .zones
@@ -345,7 +340,8 @@ impl NinePatchScratch {
 }
 
 impl Zone {
-    /// The blocks of a row that are missing of some wanted ones, before and behind those that are there: they are there from now on.
+    /// The blocks, or of a likeness the columns, that are missing of some wanted ones of a row, before and behind those that are there: they
+    /// are there from now on.
     #[inline(always)]
     fn missing(&mut self, row: i64, wanted: &Range<usize>) -> [Range<usize>; 2] {
         let slot = slot(row);

@@ -1,6 +1,6 @@
 //! The pixels that lie wholly inside a rounded rectangle, row by row.
 
-use super::inside::floor;
+use crate::density::frame::whole_below;
 use crate::density::rounded::Rounded;
 
 /// Calls `push` with row, first column and end of each run of pixels that lie wholly inside of a rounded rectangle in pixels. Rows
@@ -8,7 +8,7 @@ use crate::density::rounded::Rounded;
 pub(super) fn find(card: &Rounded, [width, height]: [u32; 2], mut push: impl FnMut(u32, u32, u32)) {
     let [top_left, top_right, bottom_right, bottom_left] = card.radii;
     let (width, height) = (f64::from(width), f64::from(height));
-    let ceil = |v: f64| -floor(-v) as u32;
+    let ceil = |v: f64| -whole_below(-v) as u32;
     let first = ceil(card.min.y.clamp(0.0, height));
     let end = card.max.y.clamp(0.0, height) as u32;
     let columns = |left: f64, right: f64| {

@@ -7,6 +7,7 @@ use core::f64::consts::SQRT_2;
 
 use glam::DVec2;
 
+use crate::density::frame::whole_below;
 use crate::outline::{Arc, Edge};
 
 /// The part of an edge in one row.
@@ -28,6 +29,9 @@ pub(crate) struct Inside {
     sorted: Vec<Crossing>,
     starts: Vec<u32>,
 }
+
+/// Beyond all columns that a grid may have.
+const FAR: f64 = 2e9;
 
 /// How far from a curve the lines in its place may be, in pixels: so much is kept from them.
 pub(crate) const FLATNESS: f64 = 1.0 / 16.0;
@@ -108,9 +112,8 @@ impl Inside {
             self.crossings.push(Crossing {
                 row,
                 winding: if crosses { sign } else { 0 },
-                // What is far left or right is held at the ends of the numbers.
-                left: floor(left - margin),
-                right: -floor(-right - margin),
+                left: column(left - margin),
+                right: -column(-right - margin),
             });
         }
     }
@@ -138,10 +141,9 @@ impl Inside {
     }
 }
 
-/// The largest whole number not above `x`. The function for it is a call where a level has no instruction.
-pub(super) fn floor(x: f64) -> i32 {
-    let whole = x as i32;
-    whole - i32::from(f64::from(whole) > x)
+/// The column that an x is in; what is far left or right is held at [`FAR`].
+fn column(x: f64) -> i32 {
+    whole_below(x.clamp(-FAR, FAR)) as i32
 }
 
 /// Sorts items by their rows, each row's as they were, into `sorted`; row n's begin at `starts[n]`.

@@ -230,6 +230,10 @@ const TIP: f64 = 5.0;
 /// Rows about tips are worth their own distance where so many times as many are needed there.
 const WORTH: f64 = 1.5;
 
+/// Tips that are fewer rows apart than this add up. Of 400,000 cards with tips none passed 0.88 of its tolerance; with 4, and none below 0.5
+/// of the penumbra's radius, seven of 200,000 passed half a level.
+const TOGETHER: f64 = 7.0;
+
 /// The columns and the rows a penumbra radius for a tolerance.
 struct Steps {
     columns: f64,
@@ -244,7 +248,7 @@ impl Steps {
     fn new(shape: &Rounded, radius: f64, levels: f64) -> Self {
         let steps = ROWS * cubic::steps(levels);
         let near = |distance: f64, rows: f64| distance.abs() < rows * radius / steps;
-        let meet = |distance: f64| near(distance, 7.0);
+        let meet = |distance: f64| near(distance, TOGETHER);
         let size = shape.max - shape.min;
         let [tl, tr, br, bl] = shape.radii;
         let tips = shape.radii.map(|corner| tip(corner / radius));
@@ -253,12 +257,8 @@ impl Steps {
         let together = [1.0, 2.0, 4.0][usize::from(across) + usize::from(down)];
         let tip = tips.into_iter().fold(0.0, f64::max) / levels * together;
         let [columns, rows] = [size.x, size.y].map(|size| {
-            let ends = if near(size - 2.0 * radius, 4.0) {
-                2.0
-            } else {
-                1.0
-            };
-            ROWS * cubic::steps(levels / ends)
+            let is_thin = near(size - 2.0 * radius, 4.0);
+            ROWS * cubic::steps(if is_thin { 0.5 * levels } else { levels })
         });
         let has_tips = tip > WORTH * rows;
         Self {
