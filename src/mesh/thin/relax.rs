@@ -1,6 +1,6 @@
 //! Fewer triangles still, for longer: between rounds of thinning vertices move to where the triangles about them are less wrong, and sides
-//! turn in the squares that they are across, so that more sides can go. Vertices on the penumbra's edges move as well: of a circle's
-//! chords some lie inside of it then and some reach out, and there are fewer.
+//! turn in the squares that they are across, so that more sides can go. Vertices on the penumbra's edges move as well, where what it
+//! loses there is flat enough.
 
 use glam::DVec2;
 
