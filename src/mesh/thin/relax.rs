@@ -1,10 +1,9 @@
-//! Fewer triangles still, for longer: between rounds of thinning vertices move to where the triangles about them are less wrong, and sides
-//! turn in the squares that they are across, so that more sides can go. Vertices on the penumbra's edges move as well, where what it
-//! loses there is flat enough.
+//! Fewer triangles still, for longer: between rounds of thinning vertices move to where the triangles about them are less wrong, so that
+//! more sides can go. Those on the penumbra's edges move as well, where what it loses there is flat enough.
 
 use glam::DVec2;
 
-use super::{Corner, Fit, GONE, LARGE_CUT, LOST, Opposite, Place, Thinning, Triangle};
+use super::{Corner, Fit, LARGE_CUT, LOST, Opposite, Place, Thinning};
 use crate::mesh::regions::Region;
 
 /// Rounds at most, and the part of the triangles that each has to take away for another.
@@ -34,9 +33,6 @@ impl Thinning<'_> {
                 if place != Place::Fixed && self.bears(vertex) {
                     self.relax(vertex, place);
                 }
-            }
-            for index in 0..self.triangles.len() {
-                self.flip_sides(index);
             }
             for corner in &mut self.corners {
                 corner.fresh = true;
@@ -82,50 +78,6 @@ impl Thinning<'_> {
         if let Some(fit) = found {
             self.move_to(vertex, &sides, fit);
         }
-    }
-
-    /// Turns sides of a triangle in the squares that they are across, where both triangles are less wrong then.
-    fn flip_sides(&mut self, index: usize) {
-        for side in 0..3 {
-            let Triangle {
-                corners, region, ..
-            } = self.triangles[index];
-            if corners == GONE || region != Region::Penumbra {
-                return;
-            }
-            let [a, from, to] = [0, 1, 2].map(|step| corners[(side + step) % 3]);
-            let beside = self.star(from).find(|&(_, [_, last])| last == to);
-            // Each side is tried once.
-            if let Some((other, [b, _])) = beside
-                && index < other
-                && self.triangles[other].region == Region::Penumbra
-            {
-                self.flip([index, other], [a, b], [from, to]);
-            }
-        }
-    }
-
-    /// Puts a side between two vertices in place of the one between two others, if both triangles are less wrong then.
-    fn flip(&mut self, pair: [usize; 2], [a, b]: [usize; 2], [from, to]: [usize; 2]) {
-        let before = self.energy(pair.into_iter().map(|index| self.triangles[index].error));
-        let [first, second] = pair;
-        let sides = [(first, [from, b]), (second, [b, to])];
-        let Corner { at, density, .. } = self.corners[a];
-        let Some(fit) = self.fit(at, Some(density), &sides) else {
-            return;
-        };
-        let after = self.energy(fit.assessments.iter().flatten().map(|found| found.error));
-        if after >= before {
-            return;
-        }
-        for ((index, [p, q]), assessment) in sides.into_iter().zip(fit.assessments) {
-            self.triangles[index].corners = [a, p, q];
-            self.triangles[index].note(assessment);
-        }
-        self.corners[to].around.retain(|&index| index != first);
-        self.corners[from].around.retain(|&index| index != second);
-        self.corners[a].around.push(second);
-        self.corners[b].around.push(first);
     }
 
     /// What triangles are wrong by, which is to be lowered: the worst count most.
