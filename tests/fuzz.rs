@@ -11,7 +11,7 @@ mod targets;
 use std::panic::catch_unwind;
 use std::{fs, path};
 
-use common::{Random, setting};
+use common::{Random, seeds};
 use targets::TARGETS;
 
 fn random_bytes(random: &mut Random) -> Vec<u8> {
@@ -81,8 +81,7 @@ fn texts(name: &str) -> Vec<String> {
 
 #[test]
 fn nothing_that_is_fuzzed_fails() {
-    let (first, count) = (setting("PENUMBRAL_SEED", 0), setting("PENUMBRAL_CASES", 60));
-    println!("{count} cases a target from seed {first} on");
+    let cases = seeds("each target", 60);
     for (name, target) in TARGETS {
         let seeds = path::Path::new(env!("CARGO_MANIFEST_DIR"))
             .join("fuzz/seeds")
@@ -92,7 +91,7 @@ fn nothing_that_is_fuzzed_fails() {
             .map(|file| fs::read(file.unwrap().path()).unwrap())
             .collect();
         let texts = texts(name);
-        inputs.extend((first..first + count).map(|seed| {
+        inputs.extend(cases.clone().map(|seed| {
             let mut random = Random::new(seed as u64);
             if texts.is_empty() || random.chance(0.02) {
                 random_bytes(&mut random)

@@ -6,9 +6,7 @@
 #[expect(dead_code, reason = "other tests take more of it")]
 mod common;
 
-use common::{
-    Case, Random, Summary, bits, by, case, densities, setting, shapes, snapped, worst_of,
-};
+use common::{Case, Random, Summary, bits, by, case, densities, seeds, shapes, snapped, worst_of};
 use penumbral::plan::{self, Method, Target};
 use penumbral::{
     Color, Error, Grid, Hidden, Light, Paint, PixelOptions, Scratch, Shadow, Shape, Tolerance,
@@ -33,12 +31,7 @@ fn every_method_keeps_its_tolerance_on_half_pixels() {
 
 fn all_keep_their_tolerance(case: fn(usize) -> Case, count: usize) {
     let (mut scratch, mut summary) = (Scratch::new(), Summary::default());
-    let (seed, count) = (
-        setting("PENUMBRAL_SEED", 0),
-        setting("PENUMBRAL_CASES", count),
-    );
-    println!("{count} cases from seed {seed} on");
-    for index in seed..seed + count {
+    for index in seeds("every method", count) {
         let case = case(index);
         let label = case.label(index);
         let mut draw = |method, tolerance| {
@@ -277,8 +270,7 @@ fn corners_nearly_as_round_as_the_disc_keep_their_tolerance() {
 #[test]
 fn cards_with_tips_keep_their_tolerance() {
     let (mut scratch, mut summary) = (Scratch::new(), Summary::default());
-    let first = setting("PENUMBRAL_SEED", 0);
-    for seed in first..first + setting("PENUMBRAL_CASES", 200) {
+    for seed in seeds("cards with tips", 200) {
         let random = &mut Random::new(seed as u64);
         let radius = 6.0 + 40.0 * random.between(0.0, 1.0) * random.between(0.0, 1.0);
         let levels = random.pick(&[0.5, 1.0, 1.0, 2.0]);
@@ -332,8 +324,7 @@ fn error_of_card(
 #[test]
 fn cards_alike_left_and_right_keep_their_tolerance() {
     let (mut scratch, mut summary) = (Scratch::new(), Summary::default());
-    let first = setting("PENUMBRAL_SEED", 0);
-    for seed in first..first + setting("PENUMBRAL_CASES", 200) {
+    for seed in seeds("cards of like halves", 200) {
         let random = &mut Random::new(seed as u64);
         let radius = 3.0 + 40.0 * random.between(0.0, 1.0) * random.between(0.0, 1.0);
         let levels = random.pick(&[0.5, 1.0, 1.0, 2.0, 4.0]);
@@ -604,8 +595,7 @@ fn assert_covered(
 #[test]
 fn hidden_pixels_are_covered() {
     let mut scratch = Scratch::new();
-    let seed = setting("PENUMBRAL_SEED", 0);
-    for index in seed..seed + setting("PENUMBRAL_CASES", 400) {
+    for index in seeds("hidden pixels", 400) {
         let case = if index % 2 == 0 {
             case(index)
         } else {

@@ -11,7 +11,7 @@
 mod common;
 
 use common::drawn::Drawn;
-use common::{Case, Random, Summary, bits, by, case, densities, radius, setting, shapes};
+use common::{Case, Random, Summary, bits, by, case, densities, radius, shapes};
 use penumbral::plan::Method;
 use penumbral::{Grid, Light, Scratch, Shadow, Shape};
 
@@ -28,10 +28,7 @@ const CURVED: f64 = 0.02 / 255.0;
 
 /// The seeds of a test's cases, each with a source of its own for what is asked of the case.
 fn seeds(what: &str, count: usize) -> impl Iterator<Item = (usize, Random)> {
-    let first = setting("PENUMBRAL_SEED", 0);
-    let count = setting("PENUMBRAL_CASES", count);
-    println!("{what}: {count} cases from seed {first} on");
-    (first..first + count).map(|seed| (seed, Random::new(!(seed as u64))))
+    common::seeds(what, count).map(|seed| (seed, Random::new(!(seed as u64))))
 }
 
 /// A part of a case's pixels, and the centre of the first of them.

@@ -25,11 +25,18 @@ pub(super) fn touching(share: f64) -> [f32; 4] {
     [a - taken, b + taken, c + taken, d - taken]
 }
 
+/// The density between four neighbours, by their weights.
+#[inline(always)]
+pub(super) fn sum<S: Simd>(simd: S, [a, b, c, d]: [f32x16<S>; 4], weights: [f32; 4]) -> f32x16<S> {
+    let sum = a * weights[0] + b * weights[1] + (c * weights[2] + d * weights[3]);
+    sum.max(f32x16::splat(simd, 0.0))
+        .min(f32x16::splat(simd, 1.0))
+}
+
 /// Puts densities between four rows, by their weights, into `to`: whole vectors of them.
 #[inline(always)]
 pub(super) fn between<S: Simd>(simd: S, rows: [&[f32]; 4], weights: [f32; 4], to: &mut [f32]) {
     let [a, b, c, d] = rows;
-    let (zero, one) = (f32x16::splat(simd, 0.0), f32x16::splat(simd, 1.0));
     let to = to.as_chunks_mut::<LANES>().0.iter_mut();
     let outer = a
         .as_chunks::<LANES>()
@@ -44,8 +51,7 @@ pub(super) fn between<S: Simd>(simd: S, rows: [&[f32]; 4], weights: [f32; 4], to
     for ((to, (a, d)), (b, c)) in to.zip(outer).zip(inner) {
         let (a, b) = (f32x16::from_slice(simd, a), f32x16::from_slice(simd, b));
         let (c, d) = (f32x16::from_slice(simd, c), f32x16::from_slice(simd, d));
-        let sum = a * weights[0] + b * weights[1] + (c * weights[2] + d * weights[3]);
-        sum.max(zero).min(one).store_slice(to);
+        sum(simd, [a, b, c, d], weights).store_slice(to);
     }
 }
 

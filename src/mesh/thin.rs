@@ -340,30 +340,37 @@ impl<'a> Thinning<'a> {
         })
     }
 
-    /// The same if what the penumbra loses is flat enough.
-    fn cut(&mut self, vertex: usize, ends: [usize; 2], fit: Fit) -> Option<Fit> {
+    /// The same if what the penumbra loses is flat enough, where an edge's vertex goes from between its neighbours to where it fits.
+    fn cut(&mut self, vertex: usize, ends: [usize; 2], mut fit: Fit) -> Option<Fit> {
         let [before, next] = ends.map(|v| self.corners[v].at);
         let Corner { at, density, .. } = self.corners[vertex];
-        if (next - before).perp_dot(at - before) >= 0.0 {
-            return Some(fit);
+        for corners in [[before, at, fit.at], [fit.at, at, next]] {
+            let [a, b, c] = corners;
+            let area = 0.5 * (b - a).perp_dot(c - a);
+            if area <= 0.0 {
+                continue;
+            }
+            let found = self
+                .measure
+                .assess(corners, [density; 3], [false; 3], true, self.most_cut);
+            if found.most > self.most_cut {
+                return None;
+            }
+            fit.cut = fit.cut.max(found.exact_error);
+            fit.lost += area * found.exact_error;
         }
-        let corners = [before, at, next];
-        let found = self
-            .measure
-            .assess(corners, [density; 3], [false; 3], true, self.most_cut);
-        let area = 0.5 * (at - before).perp_dot(next - before);
-        let lost = area * found.exact_error;
-        (found.most <= self.most_cut && lost <= self.spare).then_some(Fit {
-            cut: found.exact_error,
-            lost,
-            ..fit
-        })
+        (fit.lost <= self.spare).then_some(fit)
+    }
+
+    /// Notes what a fit loses.
+    fn lose(&mut self, fit: &Fit) {
+        self.cut = self.cut.max(fit.cut);
+        self.spare -= fit.lost;
     }
 
     /// Leaves a vertex out, and `other` as fitted.
     fn put(&mut self, vertex: usize, other: usize, sides: &[Opposite], fit: Fit) {
-        self.cut = self.cut.max(fit.cut);
-        self.spare -= fit.lost;
+        self.lose(&fit);
         let between: Vec<usize> = self
             .star(vertex)
             .filter(|(_, side)| side.contains(&other))

@@ -9,6 +9,7 @@
 pub mod drawn;
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use drawn::Drawn;
 use penumbral::plan::Method;
@@ -557,6 +558,14 @@ pub fn worst_of(a: &[f32], b: &[f32]) -> f32 {
 /// A number from the environment.
 pub fn setting(name: &str, default: usize) -> usize {
     std::env::var(name).map_or(default, |text| text.parse().unwrap())
+}
+
+/// The seeds of a test's cases: `count` of them, or as many as `PENUMBRAL_CASES` says, from `PENUMBRAL_SEED` on.
+pub fn seeds(what: &str, count: usize) -> Range<usize> {
+    let first = setting("PENUMBRAL_SEED", 0);
+    let count = setting("PENUMBRAL_CASES", count);
+    println!("{what}: {count} cases from seed {first} on");
+    first..first + count
 }
 
 pub fn by(method: Option<Method>) -> PixelOptions<'static> {

@@ -55,15 +55,12 @@ impl Mirror {
     /// in `from` before their first.
     #[inline(always)]
     pub(super) fn fill<S: Simd>(&self, simd: S, from: &[f32], part: &Range<usize>, to: &mut [f32]) {
-        let (zero, one) = (f32x16::splat(simd, 0.0), f32x16::splat(simd, 1.0));
-        let [a, b, c, d] = self.weights;
         let before = self.sum + (BEFORE - BLOCK) as i64;
         for first in part.clone().step_by(BLOCK) {
             // A block's columns are in the other order on the left.
             let from = &from[(before - first as i64) as usize..];
             let at = |place: usize| f32x16::from_slice(simd, &from[place..place + BLOCK]);
-            let sum = at(0) * a + at(1) * b + (at(2) * c + at(3) * d);
-            let sum = sum.max(zero).min(one);
+            let sum = cubic::sum(simd, [at(0), at(1), at(2), at(3)], self.weights);
             for (lane, to) in to[first..first + BLOCK].iter_mut().enumerate() {
                 *to = sum[BLOCK - 1 - lane];
             }

@@ -3,7 +3,7 @@
 
 use glam::DVec2;
 
-use super::{Corner, Fit, LARGE_CUT, LOST, Opposite, Place, Thinning};
+use super::{Fit, LARGE_CUT, LOST, Opposite, Place, Thinning};
 use crate::mesh::regions::Region;
 
 /// Rounds at most, and the part of the triangles that each has to take away for another.
@@ -65,10 +65,7 @@ impl Thinning<'_> {
         let at = self.corners[vertex].at;
         let length = |&(_, [other, _]): &Opposite| (self.corners[other].at - at).length();
         let shortest = sides.iter().map(length).fold(f64::INFINITY, f64::min);
-        let mut found = match place {
-            Place::Inside => self.try_at(vertex, place, at, &sides, &mut best),
-            _ => None,
-        };
+        let mut found = self.try_at(vertex, place, at, &sides, &mut best);
         for step in STEPS {
             for way in WAYS {
                 let to = at + DVec2::from(way) * (step * shortest);
@@ -105,38 +102,15 @@ impl Thinning<'_> {
             return None;
         }
         let fit = match place {
-            Place::Edge(ends) => self.leave(vertex, ends, fit)?,
+            Place::Edge(ends) => self.cut(vertex, ends, fit)?,
             _ => fit,
         };
         *best = energy;
         Some(fit)
     }
 
-    /// The same if what the penumbra loses where an edge's vertex moves is flat enough.
-    fn leave(&mut self, vertex: usize, ends: [usize; 2], mut fit: Fit) -> Option<Fit> {
-        let [before, next] = ends.map(|v| self.corners[v].at);
-        let Corner { at, density, .. } = self.corners[vertex];
-        for corners in [[before, at, fit.at], [at, next, fit.at]] {
-            let [a, b, c] = corners;
-            let area = 0.5 * (b - a).perp_dot(c - a);
-            if area <= 0.0 {
-                continue;
-            }
-            let found = self
-                .measure
-                .assess(corners, [density; 3], [false; 3], true, self.most_cut);
-            if found.most > self.most_cut {
-                return None;
-            }
-            fit.cut = fit.cut.max(found.exact_error);
-            fit.lost += area * found.exact_error;
-        }
-        (fit.lost <= self.spare).then_some(fit)
-    }
-
     fn move_to(&mut self, vertex: usize, sides: &[Opposite], fit: Fit) {
-        self.cut = self.cut.max(fit.cut);
-        self.spare -= fit.lost;
+        self.lose(&fit);
         for (&(index, _), assessment) in sides.iter().zip(fit.assessments) {
             self.triangles[index].note(assessment);
         }
