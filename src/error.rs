@@ -6,7 +6,7 @@ use core::fmt;
 /// `f32` stops telling one unit from the next.
 pub const MAX_COORDINATE: f64 = 16_777_216.0;
 
-/// A picture may not have more pixels than this (8192 x 4096, a little over 8K UHD): composing takes 20 bytes a pixel.
+/// A picture may not have more pixels than this (8192 x 4096, a little over 8K UHD): 128 MiB.
 pub const MAX_PIXELS: u64 = 1 << 25;
 
 /// A path may not have more segments, and a polygon not more points, than this.
@@ -29,6 +29,7 @@ pub type Result<T, E = Error> = core::result::Result<T, E>;
 /// | [`TooMany`](Error::TooMany) | a polygon of more than [`MAX_SEGMENTS`] points, a scene over its [`Limits`](crate::Limits) |
 /// | [`PathData`](Error::PathData) | `Path::from_svg("M 0 0 L")` |
 /// | [`CasterNotBelowLight`](Error::CasterNotBelowLight) | a cast from elevation 600 under a light at z = 600 |
+/// | [`ReceiverNotBelowLight`](Error::ReceiverNotBelowLight) | a tilted surface's cast on a receiver at 600 under a light at z = 600 |
 /// | [`CasterBelowReceiver`](Error::CasterBelowReceiver) | a cast from elevation 1 on a receiver at 2 |
 /// | [`ShadowTooLarge`](Error::ShadowTooLarge) | a cast from elevation 599.99994 under a light at z = 600 |
 /// | [`PictureSize`](Error::PictureSize) | `Grid::new([0.0, 0.0], [0, 5], 1.0)`, a canvas of a million units square |
@@ -91,6 +92,18 @@ pub enum Error {
     CasterNotBelowLight {
         /// The caster's elevation, scene units.
         elevation: f64,
+        /// The light's z, scene units.
+        light_z: f64,
+    },
+    /// The receiver is at or above the light: nothing between them casts on it.
+    #[error(
+        "receiver {} is not below the light at z = {}: lower the receiver or raise the light",
+        Shown(*receiver),
+        Shown(*light_z)
+    )]
+    ReceiverNotBelowLight {
+        /// The receiver's elevation, scene units.
+        receiver: f64,
         /// The light's z, scene units.
         light_z: f64,
     },

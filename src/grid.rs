@@ -4,6 +4,10 @@ use glam::DVec2;
 
 use crate::error::{self, Error, MAX_PIXELS, Result};
 
+/// Pixels a scene unit are no fewer and no more than this.
+pub(crate) const LEAST_SCALE: f64 = 1.0 / 1024.0;
+pub(crate) const MOST_SCALE: f64 = 1024.0;
+
 /// A grid of square pixels. Pixel (i, j) covers the square from `origin + (i, j) / pixels_per_unit` on; row j begins
 /// at `j * stride` in a buffer.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,8 +43,8 @@ impl Grid {
         let pixels_per_unit = error::within(
             "grid.pixels_per_unit",
             f64::from(pixels_per_unit),
-            1.0 / 1024.0,
-            1024.0,
+            LEAST_SCALE,
+            MOST_SCALE,
         )?;
         Ok(Self {
             corner: origin * pixels_per_unit,

@@ -83,7 +83,7 @@
 //! | `lyon`, `kurbo` | paths from these crates, meshes into lyon's buffers | kurbo |
 //! | `lab` | `lab`: the laboratory, and the commands `chart` and `atlas`; no toolkit needs it | |
 //! | `finish` | `finish`: rims that catch the light, with `raster` in pictures, with `scene` in scenes; nothing is computed where no surface has one | |
-//! | `rayon` | [`Shadow::blend_rgba8_in_bands`](crate::Shadow): drawing on several threads | rayon |
+//! | `rayon` | [`Shadow::blend_rgba8_in_bands`](crate::Shadow), [`Shadow::fill_a8_in_bands`](crate::Shadow): drawing on several threads | rayon |
 //!
 //! # Stability guarantees
 //!

@@ -186,8 +186,8 @@ impl Light {
         match self.kind {
             Kind::Disc { center, z, radius } => {
                 if g >= z {
-                    return Err(Error::CasterNotBelowLight {
-                        elevation: g,
+                    return Err(Error::ReceiverNotBelowLight {
+                        receiver: g,
                         light_z: z,
                     });
                 }

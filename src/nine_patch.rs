@@ -13,7 +13,7 @@ use crate::density::blend::{self, Rgba8};
 use crate::density::rounded::Rounded;
 use crate::density::{PixelOptions, Sink};
 use crate::error::{Error, Result};
-use crate::grid::Grid;
+use crate::grid::{Grid, LEAST_SCALE, MOST_SCALE};
 use crate::light::Projection;
 use crate::paint::Paint;
 use crate::plan::Method;
@@ -110,7 +110,7 @@ impl ShadowKey {
             size[axis] = (whole + 1.0 + reach) as u32;
             if self.size[axis].is_none() {
                 insets[axis] = near as u32;
-                insets[axis + 2] = size[axis] - near as u32 - 1;
+                insets[axis + 2] = (far + 1.0 + reach) as u32;
             } else {
                 insets[axis] = size[axis];
             }
@@ -126,8 +126,8 @@ fn reach(radius: f64) -> f64 {
 
 impl Shadow {
     /// The key of the shadow's mask and the place for it, on so many pixels a scene unit; none where the shadow is not one
-    /// of a rounded rectangle with circular corners, this is thinner than the steps that keys round to, or one mask would be
-    /// larger than a picture may be.
+    /// of a rounded rectangle with circular corners, this is thinner than the steps that keys round to, no [`Grid`] has so many pixels a
+    /// unit, or one mask would be larger than a picture may be.
     ///
     /// ```
     /// use penumbral::{Color, Grid, Light, NinePatch, Paint, Scratch, Shape, Tolerance};
@@ -151,9 +151,8 @@ impl Shadow {
         tolerance: Tolerance,
     ) -> Option<(ShadowKey, PatchPlace)> {
         let scale = f64::from(pixels_per_unit);
-        let rounded = self
-            .rounded()
-            .filter(|_| scale > 0.0 && self.radius() > 0.0)?;
+        let is_scale = (LEAST_SCALE..=MOST_SCALE).contains(&scale);
+        let rounded = self.rounded().filter(|_| is_scale && self.radius() > 0.0)?;
         let levels = (tolerance.as_levels() * 65_536.0) as u32;
         let share = f64::from(levels) / 65_536.0 / 255.0;
         let radius_step = log1p(2.0 * RADIUS * PI * share);
@@ -270,12 +269,13 @@ impl NinePatch {
     ) -> Result<()> {
         let mut canvas = PixelOptions::default().onto_rgba8(grid, pixels, paint, scratch)?;
         for axis in 0..2 {
-            let extent = place.max[axis] - place.min[axis];
+            let (start, end) = (place.min[axis], place.max[axis]);
             let least = i64::from(self.size[axis]);
-            if extent < least || extent > least && !self.stretches[axis] {
+            let fits = |extent| extent == least || extent > least && self.stretches[axis];
+            if !end.checked_sub(start).is_some_and(fits) {
                 return Err(Error::OutOfRange {
                     field: "place",
-                    value: extent as f64,
+                    value: end as f64 - start as f64,
                     min: least as f64,
                     max: if self.stretches[axis] {
                         f64::INFINITY
@@ -289,7 +289,8 @@ impl NinePatch {
         let first = [corner.x as i64, corner.y as i64];
         let [left, top, right, bottom] = self.insets.map(i64::from);
         let height = i64::from(grid.height());
-        for row in (place.min[1] - first[1]).max(0)..(place.max[1] - first[1]).min(height) {
+        let on_grid = |place: [i64; 2], axis: usize| place[axis].saturating_sub(first[axis]);
+        for row in on_grid(place.min, 1).max(0)..on_grid(place.max, 1).min(height) {
             let down = row + first[1] - place.min[1];
             let up = place.max[1] - place.min[1] - down;
             // Of the stretched rows all are the one between the insets.
@@ -302,7 +303,7 @@ impl NinePatch {
             };
             let start = (from * i64::from(self.size[0])) as usize;
             let mask = &self.mask[start..start + self.size[0] as usize];
-            let columns = [place.min[0] - first[0], place.max[0] - first[0]];
+            let columns = [on_grid(place.min, 0), on_grid(place.max, 0)];
             self.blend_row(
                 &mut canvas,
                 row as u32,
@@ -381,6 +382,45 @@ mod tests {
             }
         }
         assert!((50..100).contains(&keys), "{keys}");
+    }
+
+    #[test]
+    fn no_scale_and_no_place_is_too_large_to_be_refused() {
+        let card = Shape::rounded_rect(-40.0, -30.0, 90.0, 60.0, 12.0).unwrap();
+        for (spread, elevation) in [(0.3, 1.0), (8.0, 1.0), (1000.0, 5000.0)] {
+            let light = Light::directional([0.0, 0.0], spread).unwrap();
+            let shadow = light.cast(&card, elevation, 0.0).unwrap();
+            for scale in [
+                f32::NAN,
+                -1.0,
+                0.0,
+                1e-9,
+                1025.0,
+                1e9,
+                f32::MAX,
+                f32::INFINITY,
+            ] {
+                assert_eq!(shadow.key(scale, Tolerance::ONE_LEVEL), None, "{scale}");
+            }
+            // Corners of 12,288 pixels.
+            assert_eq!(shadow.key(1024.0, Tolerance::ONE_LEVEL), None);
+        }
+        let shadow = cards().next().unwrap();
+        let (key, _) = shadow.key(1.0, Tolerance::ONE_LEVEL).unwrap();
+        let patch = NinePatch::draw(&key, &mut Scratch::new()).unwrap();
+        let grid = Grid::new([-50.0, -50.0], [20, 20], 1.0).unwrap();
+        let paint = Paint::new(Color::BLACK, 1.0).unwrap();
+        let blended = |min, max| {
+            let (place, mut pixels) = (PatchPlace { min, max }, vec![0; 4 * 20 * 20]);
+            patch
+                .blend_rgba8(place, &grid, &mut pixels, &paint, &mut Scratch::new())
+                .map(|()| pixels.iter().any(|&byte| byte > 0))
+        };
+        assert!(blended([i64::MIN; 2], [i64::MAX; 2]).is_err());
+        assert!(blended([i64::MAX; 2], [i64::MIN; 2]).is_err());
+        assert_eq!(blended([i64::MIN; 2], [-1; 2]), Ok(true));
+        assert_eq!(blended([i64::MIN; 2], [i64::MIN + 1000; 2]), Ok(false));
+        assert_eq!(blended([i64::MAX - 1000; 2], [i64::MAX; 2]), Ok(false));
     }
 
     #[test]

@@ -141,6 +141,10 @@ mod tests {
                     shadow
                         .blend_rgba8(&grid, &mut alone, &paint, &options, &mut scratch)
                         .unwrap();
+                    let mut mask_alone = vec![200; 157 * 130 + 150];
+                    shadow
+                        .fill_a8_with(&grid, &mut mask_alone, &options, &mut scratch)
+                        .unwrap();
                     for threads in [1, 2, 7] {
                         let mut scratches: Vec<Scratch> =
                             (0..threads).map(|_| Scratch::new()).collect();
@@ -155,6 +159,11 @@ mod tests {
                             )
                             .unwrap();
                         assert!(alone == together, "{threads} threads, r {radius}");
+                        let mut mask = vec![200; 157 * 130 + 150];
+                        shadow
+                            .fill_a8_in_bands(&grid, &mut mask, &options, &mut scratches)
+                            .unwrap();
+                        assert!(mask_alone == mask, "{threads} threads, r {radius}, mask");
                     }
                 }
             }

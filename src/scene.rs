@@ -11,7 +11,7 @@ pub use self::surface::Surface;
 
 use crate::compose::Overlap;
 use crate::error::{self, Error, MAX_PIXELS, Result};
-use crate::grid::Grid;
+use crate::grid::{Grid, LEAST_SCALE, MOST_SCALE};
 use crate::light::Light;
 use crate::tone::{Color, Tone};
 
@@ -66,7 +66,7 @@ impl Scene {
     /// # Errors
     /// A scale not from 1/1024 to 1024, a picture of more than [`MAX_PIXELS`](crate::MAX_PIXELS).
     pub fn with_scale(mut self, scale: f32) -> Result<Self> {
-        error::within("scale", f64::from(scale), 1.0 / 1024.0, 1024.0)?;
+        error::within("scale", f64::from(scale), LEAST_SCALE, MOST_SCALE)?;
         self.scale = scale;
         self.picture_size()?;
         Ok(self)
@@ -254,7 +254,12 @@ impl Scene {
 fn check(light: &Light, surface: &Surface) -> Result<()> {
     match surface.form() {
         // What is below the ground or above the light hides nothing.
-        Form::Posed(pose) => light.cast_posed(surface.shape(), pose, 0.0).map(|_| ()),
+        Form::Posed(_) => {
+            for corner in surface.corners().into_iter().flatten() {
+                error::coordinate("elevation", corner.z)?;
+            }
+            Ok(())
+        }
         Form::Level | Form::Image(..) => {
             let projection = light.projection(surface.elevation(), 0.0)?;
             projection.check_reach(surface.shape(), surface.elevation())

@@ -263,7 +263,7 @@ impl Shadow {
         scratch: &mut Scratch,
     ) -> Result<()> {
         let mut sink = options.onto_mask(grid, mask, scratch.level())?;
-        if plan::skip(self, grid, options, Some(1.0)).is_none() {
+        if plan::skip(self, grid, options, Some(1.0))?.is_none() {
             density::draw(self, grid, options, scratch, &mut sink);
         }
         Ok(())
@@ -283,7 +283,7 @@ impl Shadow {
         scratch: &mut Scratch,
     ) -> Result<()> {
         let mut sink = options.onto_densities(grid, densities)?;
-        if plan::skip(self, grid, options, None).is_none() {
+        if plan::skip(self, grid, options, None)?.is_none() {
             density::draw(self, grid, options, scratch, &mut sink);
         }
         Ok(())
@@ -304,7 +304,7 @@ impl Shadow {
         scratch: &mut Scratch,
     ) -> Result<()> {
         let mut sink = options.onto_rgba8(grid, pixels, paint, scratch)?;
-        if plan::skip(self, grid, options, Some(paint.opacity())).is_none() {
+        if plan::skip(self, grid, options, Some(paint.opacity()))?.is_none() {
             density::draw(self, grid, options, scratch, &mut sink);
         }
         Ok(())

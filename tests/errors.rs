@@ -3,8 +3,9 @@
 #![expect(clippy::unwrap_used, reason = "what fails in a helper is the test")]
 
 use penumbral::{
-    Blending, Bounds, Color, Error, FillRule, Grid, Hidden, Light, Limits, MAX_SEGMENTS, Paint,
-    Path, PixelOptions, Pose, Renderer, Scene, Scratch, Shape, Surface, Tolerance, Tone,
+    Blending, Bounds, Color, DensityMap, Error, FillRule, Grid, Hidden, Light, Limits,
+    MAX_SEGMENTS, Paint, Path, PixelOptions, Pose, Renderer, Scene, Scratch, Shape, Surface,
+    Tolerance, Tone, plan,
 };
 use tiny_skia::Pixmap;
 
@@ -22,9 +23,12 @@ fn scene() -> Scene {
     scene
 }
 
+fn pose() -> Pose {
+    Pose::turned(20.0, [10.0, 10.0], [0.0, 1.0], 0.4).unwrap()
+}
+
 fn posed() -> Surface {
-    let pose = Pose::turned(20.0, [10.0, 10.0], [0.0, 1.0], 0.4).unwrap();
-    Surface::posed(card(), &pose)
+    Surface::posed(card(), &pose())
 }
 
 fn grid() -> Grid {
@@ -44,6 +48,28 @@ fn drawn(length: usize, hidden: Option<Grid>) -> Result<(), Error> {
     };
     let shadow = light().cast(&card(), 8.0, 0.0)?;
     shadow.fill_a8_with(&grid(), &mut vec![0; length], &options, &mut Scratch::new())
+}
+
+/// Does something with pixels hidden on a grid of 10 x 10.
+fn hiding(act: impl Fn(&PixelOptions<'_>) -> Result<(), Error>) -> Result<(), Error> {
+    let hidden = Hidden::new(&grid());
+    act(&PixelOptions {
+        hidden: Some(&hidden),
+        ..PixelOptions::default()
+    })
+}
+
+fn mapped(options: &PixelOptions<'_>) -> Result<(), Error> {
+    let (scene, mut map) = (scene(), DensityMap::default());
+    scene
+        .ground_shadows()?
+        .draw(&mut map, options, &mut Scratch::new())
+}
+
+fn skipped(options: &PixelOptions<'_>) -> Result<(), Error> {
+    let shadow = light().cast(&card(), 8.0, 0.0)?;
+    let grid = Grid::new([0.0, 0.0], [60, 40], 1.0)?;
+    plan::skip(&shadow, &grid, options, None).map(drop)
 }
 
 fn limited(set: impl Fn(&mut Limits)) -> Result<(), Error> {
@@ -73,6 +99,7 @@ fn cases() -> Vec<(&'static str, Result<(), Error>, &'static str)> {
         ("TooMany", limited(|limits| limits.surfaces = 0), "1 surfaces, over the limit of 0: simplify or split what has them"),
         ("PathData", Path::from_svg("M 0 0 L").map(drop), "SVG path data, character 8: the data end inside a segment"),
         ("CasterNotBelowLight", cast(600.0, 0.0), "elevation 600 is not below the light at z = 600: lower the caster or raise the light"),
+        ("ReceiverNotBelowLight", light().cast_posed(&card(), &pose(), 600.0).map(drop), "receiver 600 is not below the light at z = 600: lower the receiver or raise the light"),
         ("CasterBelowReceiver", cast(1.0, 2.0), "elevation 1 is below the receiver at 2: a caster must be at or above what it shades"),
         ("ShadowTooLarge", cast(599.999_94, 0.0), "the shadow of a caster at elevation 599.99994 reaches"),
         ("PictureSize", Grid::new([0.0, 0.0], [0, 5], 1.0).map(drop), "a picture of 0 x 5 pixels: give 1 to 33554432 pixels in all"),
@@ -81,6 +108,10 @@ fn cases() -> Vec<(&'static str, Result<(), Error>, &'static str)> {
         ("BufferSize", Paint::new(Color::BLACK, 0.2).and_then(|paint| paint.blend_mask(&grid(), &[0; 99], &mut [0; 400], &mut Scratch::new())), "the buffer holds 99 bytes or pixels, the grid needs 100: allocate stride x height"),
         ("BufferSize", Renderer::new().render(&scene(), &mut pixmap(61)), "the buffer holds 2440 bytes or pixels, the grid needs 2400: allocate stride x height"),
         ("OtherGrid", drawn(100, Grid::new([1.0, 0.0], [10, 10], 1.0).ok()), "options.hidden was made for another grid: make it for the grid that is drawn"),
+        ("OtherGrid", hiding(mapped), "options.hidden was made for another grid: make it for the grid that is drawn"),
+        ("OtherGrid", hiding(skipped), "options.hidden was made for another grid: make it for the grid that is drawn"),
+        ("NotFinite", scene().push(posed().raised(f32::NAN)), "elevation is NaN: give a finite number"),
+        ("OutOfRange", scene().push(posed().raised(1e30)), "elevation is 1e30: give a number from -16777216 to 16777216"),
         ("NotFlat", Pose::of_corners([10.0, 20.0, 40.0, 30.0], [5.0, 9.0, 14.0, 11.0]).map(drop), "the corners' elevations miss one plane by -1: "),
         ("NotOpaque", scene().with_background(Color { a: 128, ..Color::WHITE }).map(drop), "background has the alpha 128 of 255: give an opaque colour"),
         ("NotInSvg", scene().with_tone(Tone::default().with_blending(Blending::Linear)).to_svg(Tolerance::ONE_LEVEL).map(drop), "linear blending cannot be written as SVG"),
@@ -134,7 +165,7 @@ fn the_table_has_every_error_and_each_is_tried() {
         let is_out = variant == "Stroke" || variant == "NotFinished" && !cfg!(feature = "finish");
         assert!(is_tried || is_out, "{variant}");
     }
-    assert_eq!(count, 20);
+    assert_eq!(count, 21);
 }
 
 /// Stopped wherever it asks, a drawing ends at once, and the next one is as if nothing had been.

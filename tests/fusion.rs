@@ -118,7 +118,9 @@ fn stacks_hide_the_union_of_what_each_hides() {
             scene.push(card.surface()).unwrap();
         }
         let shadows = scene.ground_shadows().unwrap();
-        shadows.draw(&mut map, &PixelOptions::default(), &mut scratch);
+        shadows
+            .draw(&mut map, &PixelOptions::default(), &mut scratch)
+            .unwrap();
         for _ in 0..12 {
             let at = [0; 2].map(|_| random.below(CANVAS as usize));
             let got = f64::from(map.densities()[at[1] * CANVAS as usize + at[0]]);
@@ -183,7 +185,9 @@ fn a_scene_moved_by_whole_pixels_has_the_same_bits() {
         }
         let mut map = DensityMap::default();
         let shadows = scene.ground_shadows().unwrap();
-        shadows.draw(&mut map, &PixelOptions::default(), &mut Scratch::new());
+        shadows
+            .draw(&mut map, &PixelOptions::default(), &mut Scratch::new())
+            .unwrap();
         map
     };
     let (here, there) = (draw(0.0), draw(37.0));
@@ -213,7 +217,9 @@ fn a_tilted_card_and_a_level_one_hide_their_union() {
             .unwrap();
         let mut map = DensityMap::default();
         let shadows = scene.ground_shadows().unwrap();
-        shadows.draw(&mut map, &PixelOptions::default(), &mut Scratch::new());
+        shadows
+            .draw(&mut map, &PixelOptions::default(), &mut Scratch::new())
+            .unwrap();
         map
     };
     let (posed, level) = (scene(true), scene(false));

@@ -1,6 +1,6 @@
 //! What reading and drawing a scene takes of memory is within the formula of [`penumbral::Limits`].
 
-use penumbral::{Renderer, Scene};
+use penumbral::{Bounds, Renderer, Scene};
 use tiny_skia::Pixmap;
 
 /// A scene of surfaces and its vertices.
@@ -51,6 +51,14 @@ fn cases() -> Vec<Case> {
         Case {
             name: "pixels",
             canvas: [1500, 1000],
+            surfaces: vec![card(8, r#""radius":3,"#, 4)],
+            vertices: 8,
+            curves: (0, 0.0),
+            crossings: 0,
+        },
+        Case {
+            name: "a picture of several bands",
+            canvas: [3000, 3000],
             surfaces: vec![card(8, r#""radius":3,"#, 4)],
             vertices: 8,
             curves: (0, 0.0),
@@ -124,11 +132,20 @@ fn memory_is_within_the_formula() {
             let scene = Scene::from_json(&text).unwrap();
             let mut pixmap = Pixmap::new(width, height).unwrap();
             Renderer::new().render(&scene, &mut pixmap).unwrap();
+            let all = Bounds {
+                min: [0.0, 0.0],
+                max: [width as f32, height as f32],
+            };
+            Renderer::new()
+                .render_within(&scene, &[all], &mut pixmap)
+                .unwrap();
         });
         let pixels = (width * height) as usize;
+        let band = pixels.min(1 << 20);
         let (curves, length) = case.curves;
         let lines = 32 * (curves as f64 * length.sqrt()) as usize;
-        let formula = 24 * pixels
+        let formula = 4 * pixels
+            + 20 * band
             + 2048 * (case.vertices + lines)
             + 256 * case.crossings
             + 20 * text.len()

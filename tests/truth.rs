@@ -82,7 +82,7 @@ fn maps_of_an_independent_closed_form_agree() {
                 ..PixelOptions::default()
             };
             let shadows = scene.ground_shadows().unwrap();
-            shadows.draw(&mut map, &options, &mut scratch);
+            shadows.draw(&mut map, &options, &mut scratch).unwrap();
             assert_eq!(map.densities().len(), truth.len(), "{name}");
             let error = |(got, truth): (&f32, &f64)| (f64::from(*got) - truth).abs() * 255.0;
             let errors: Vec<f64> = map.densities().iter().zip(&truth).map(error).collect();
@@ -117,7 +117,7 @@ fn pairs_hide_what_a_polygon_boolean_says() {
                 ..PixelOptions::default()
             };
             let shadows = scene.ground_shadows().unwrap();
-            shadows.draw(&mut map, &options, &mut scratch);
+            shadows.draw(&mut map, &options, &mut scratch).unwrap();
             assert_eq!(map.densities().len(), truth.len());
             let error = |(got, truth): (&f32, &f64)| (f64::from(*got) - truth).abs() * 255.0;
             let worst = map.densities().iter().zip(&truth).map(error);

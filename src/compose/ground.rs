@@ -91,7 +91,16 @@ impl GroundShadows<'_> {
     }
 
     /// Draws what all casters hide of the light into `map`, whose memory is used again; hidden pixels are 0.
-    pub fn draw(&self, map: &mut DensityMap, options: &PixelOptions<'_>, scratch: &mut Scratch) {
+    ///
+    /// # Errors
+    /// Options for another grid.
+    pub fn draw(
+        &self,
+        map: &mut DensityMap,
+        options: &PixelOptions<'_>,
+        scratch: &mut Scratch,
+    ) -> Result<()> {
+        options.check(&self.grid)?;
         let (width, height) = (self.grid.width(), self.grid.height());
         (map.width, map.height) = (width, height);
         map.densities.clear();
@@ -108,6 +117,7 @@ impl GroundShadows<'_> {
         ) {
             fusion::draw(&group, &self.grid, options, scratch, &mut sink);
         }
+        Ok(())
     }
 
     /// Blends the shadows in the scene's tone onto premultiplied RGBA8 pixels, row by row.

@@ -70,6 +70,14 @@ struct Window {
 /// do not count.
 const BAND: u32 = 1 << 20;
 
+/// The bands of some rows of a `width` above 0.
+fn bands(width: u32, rows: Range<u32>) -> impl ExactSizeIterator<Item = Range<u32>> {
+    let step = (BAND / width).max(1);
+    let end = rows.end;
+    rows.step_by(step as usize)
+        .map(move |first| first..end.min(first + step))
+}
+
 impl Window {
     fn new(grid: &Grid, columns: Range<u32>, rows: Range<u32>) -> Self {
         Self {
@@ -160,13 +168,12 @@ impl Renderer {
     ) -> Result<()> {
         let job = self.begin(scene, pixmap)?;
         let grid = &job.grid;
-        let rows = (BAND / grid.width()).max(1);
-        let bands = grid.height().div_ceil(rows) as usize;
-        for (band, first) in (0..grid.height()).step_by(rows as usize).enumerate() {
-            let end = grid.height().min(first + rows);
-            let window = Window::new(grid, 0..grid.width(), first..end);
+        let bands = bands(grid.width(), 0..grid.height());
+        let count = bands.len();
+        for (band, rows) in bands.enumerate() {
+            let window = Window::new(grid, 0..grid.width(), rows);
             self.draw(&job, &window, pixmap, |done, layers| {
-                if goes_on(band * layers + done, bands * layers) {
+                if goes_on(band * layers + done, count * layers) {
                     Ok(())
                 } else {
                     Err(Error::Stopped)
@@ -215,8 +222,11 @@ impl Renderer {
                 };
                 pixel(bounds.min[axis], f64::floor)..pixel(bounds.max[axis], f64::ceil)
             });
-            if !columns.is_empty() && !rows.is_empty() {
-                let window = Window::new(grid, columns, rows);
+            if columns.is_empty() {
+                continue;
+            }
+            for rows in bands(columns.end - columns.start, rows) {
+                let window = Window::new(grid, columns.clone(), rows);
                 self.draw(&job, &window, pixmap, |_, _| Ok(()))?;
             }
         }

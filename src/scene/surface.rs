@@ -241,7 +241,7 @@ impl Surface {
     }
 
     /// Where the corners of a box round the shape are.
-    fn corners(&self) -> Option<[DVec3; 4]> {
+    pub(crate) fn corners(&self) -> Option<[DVec3; 4]> {
         let (min, max) = self.shape.hull()?;
         let corners = [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)];
         Some(corners.map(|corner| match &self.form {

@@ -56,7 +56,9 @@ pub(crate) fn run(
         hidden: opaque.then_some(&hidden),
         ..PixelOptions::default()
     };
-    shadows.draw(&mut map, &options, &mut scratch);
+    shadows
+        .draw(&mut map, &options, &mut scratch)
+        .map_err(|error| error.to_string())?;
     times.sort_unstable();
     let max = map.densities().iter().copied().fold(0.0_f32, f32::max);
 

@@ -51,14 +51,15 @@ pub(crate) fn run(path: &Path) -> Result<(), Failure> {
             per_unit: f64::from(scene.scale()),
         };
         let opacity = Some(scene.tone().key() * surface.weight());
-        if let Some(skip) = plan::skip(&shadow, &grid, &PixelOptions::default(), opacity) {
+        let skip = plan::skip(&shadow, &grid, &PixelOptions::default(), opacity);
+        if let Some(skip) = skip.map_err(|error| error.to_string())? {
             let _ = writeln!(text, "  skipped {skip}");
             continue;
         }
         let tolerance = Tolerance::default();
         let choice = choose(&shadow, tolerance, pixels);
         let _ = writeln!(text, "  method  {}: {}", choice.method, choice.why);
-        for candidate in candidates(&shadow, tolerance, pixels).into_iter().flatten() {
+        for candidate in candidates(&shadow, tolerance, pixels) {
             let mark = if candidate.method == choice.method {
                 "takes"
             } else if candidate.error_levels > tolerance.as_levels() {
@@ -74,10 +75,7 @@ pub(crate) fn run(path: &Path) -> Result<(), Failure> {
                 candidate.error_levels
             );
         }
-        for mesh in candidates(&shadow, tolerance, Target::Triangles)
-            .into_iter()
-            .flatten()
-        {
+        for mesh in candidates(&shadow, tolerance, Target::Triangles) {
             let _ = writeln!(
                 text,
                 "  mesh      about {:.1} ms to build, within {:.2} levels",

@@ -58,7 +58,7 @@ fn shadow(drawing: &Drawing, part: &Part, tolerance: Tolerance) -> Result<Vec<Tr
     let mut densities = vec![0.0; part.exact.len()];
     let mut scratch = Scratch::new();
     let mut trials = Vec::new();
-    for candidate in candidates.into_iter().flatten() {
+    for candidate in candidates {
         let technique = Shipping::new(Some(candidate.method), tolerance);
         draw(&technique, part, &mut densities, &mut scratch)?;
         trials.push(Trial {
@@ -92,8 +92,7 @@ fn shadow(drawing: &Drawing, part: &Part, tolerance: Tolerance) -> Result<Vec<Tr
 
 /// What a mesh of a shadow costs: it is the only method for triangles, but is to be foretold like the others.
 fn mesh(drawing: &Drawing, part: &Part, tolerance: Tolerance) -> Option<Trial> {
-    let [candidate, ..] = plan::candidates(&part.shadow, tolerance, Target::Triangles);
-    let candidate = candidate?;
+    let candidate = plan::candidates(&part.shadow, tolerance, Target::Triangles).next()?;
     let (mut spent, mut least, mut max_levels) = (Duration::ZERO, Duration::MAX, 0.0);
     while spent < TURN {
         let begin = Instant::now();
