@@ -171,13 +171,13 @@ impl Shadow {
         let Some(rounded) = self.rounded().filter(|_| disc) else {
             return Ok(None);
         };
-        let step = rounded.min.abs().max(rounded.max.abs()).max_element() * f64::from(f32::EPSILON);
+        let far = rounded.min.abs().max(rounded.max.abs()).max_element();
+        let step = far * f64::from(f32::EPSILON);
         let Some(strips) = Strips::of(&rounded, radius) else {
             return Ok(None);
         };
         let levels = options.tolerance.as_levels();
-        // Density changes by at most 2 / π over the radius.
-        let rounding = 255.0 * step * FRAC_2_PI / radius;
+        let rounding = rounding_levels(far, radius);
         let share = levels * ROUNDING_SHARE;
         if rounding > share {
             return Ok(None);
@@ -334,6 +334,17 @@ const NARROWEST: f64 = 64.0;
 
 /// The part of the tolerance that strips leave to the rounding of their vertices.
 const ROUNDING_SHARE: f64 = 1.0 / 256.0;
+
+/// How wrong densities may be for coordinates up to `far` that are rounded to `f32`, in levels: density changes by at most 2 / π over the
+/// penumbra radius.
+fn rounding_levels(far: f64, radius: f64) -> f64 {
+    255.0 * far * f64::from(f32::EPSILON) * FRAC_2_PI / radius
+}
+
+/// The power of two at or below a number above 0: that without its fraction bits.
+fn power_of_two_below(value: f64) -> f64 {
+    f64::from_bits(value.to_bits() >> 52 << 52)
+}
 
 /// How far the chords of a hard shadow's arcs may be from them, over its extent.
 const FACET: f64 = 1e-5;

@@ -152,6 +152,13 @@ impl Edge {
         }
     }
 
+    pub(crate) fn length(&self) -> f64 {
+        match self {
+            Self::Line(line) | Self::Border(line) => (line.to - line.from).length(),
+            Self::Arc(arc) => arc.sweep.abs() * arc.radius,
+        }
+    }
+
     pub(crate) fn reversed(&self) -> Self {
         let turned = |line: &Line| Line {
             from: line.to,

@@ -121,8 +121,7 @@ impl Svg {
 
     fn draw_triangle(&mut self, triangle: [MeshVertex; 3], weight: f64, color: Color) {
         let step = GRID / self.scale;
-        let at = triangle
-            .map(|vertex| (DVec2::from(vertex.position.map(f64::from)) / step).round() * step);
+        let at = triangle.map(|vertex| (vertex.at() / step).round() * step);
         let density = triangle.map(|vertex| f64::from(vertex.density) * weight);
         if (at[1] - at[0]).perp_dot(at[2] - at[0]) == 0.0 {
             return;

@@ -3,7 +3,7 @@
 mod boxes;
 mod cut;
 
-use boxes::{Bounds, Boxes};
+use boxes::{Boxes, Extent};
 use glam::DVec2;
 
 use super::{FACET, ShadowMesh, projection_circles, tangent_loops};
@@ -84,7 +84,7 @@ impl ShadowMesh {
         };
         let mut numbers = vec![None; self.vertices.len()];
         for corners in self.indices.as_chunks::<3>().0 {
-            let at = |i: u32| DVec2::from(self.vertices[i as usize].position.map(f64::from));
+            let at = |i: u32| self.vertices[i as usize].at();
             if !keep(&corners.map(at)) {
                 continue;
             }
@@ -110,7 +110,7 @@ const CUT_FLATNESS: f64 = 1.0 / 256.0;
 const ROUNDED: f64 = 4.0;
 
 /// What holds some points.
-fn bounds<const N: usize>(points: [DVec2; N]) -> Bounds {
+fn bounds<const N: usize>(points: [DVec2; N]) -> Extent {
     let nothing = [DVec2::INFINITY, DVec2::NEG_INFINITY];
     points
         .into_iter()
@@ -185,9 +185,7 @@ mod tests {
     const MAX: DVec2 = DVec2::new(150.0, 100.0);
 
     fn corners(mesh: &ShadowMesh) -> impl Iterator<Item = [DVec2; 3]> {
-        let place = |corners: [super::super::MeshVertex; 3]| {
-            corners.map(|v| DVec2::from(v.position.map(f64::from)))
-        };
+        let place = |corners: [super::super::MeshVertex; 3]| corners.map(|v| v.at());
         mesh.triangles().map(place)
     }
 
@@ -294,7 +292,7 @@ mod tests {
         }
         for &[from, to] in edges.iter().filter(|&&[a, b]| !edges.contains(&[b, a])) {
             let ends = [from, to].map(|end| donut.vertices[end as usize]);
-            let at = ends.map(|end| DVec2::from(end.position.map(f64::from)));
+            let at = ends.map(|end| end.at());
             assert!(
                 ends.iter().all(|end| end.density == 0.0) || at.into_iter().all(&is_cut),
                 "an open edge from {} to {}",

@@ -46,7 +46,7 @@ pub fn meshes_to_svg(meshes: &[ShadowMesh]) -> String {
         svg.draw_mesh(mesh, 1.0, Color::BLACK);
         svg.draw("</g>");
         for vertex in &mesh.vertices {
-            let p = DVec2::from(vertex.position.map(f64::from));
+            let p = vertex.at();
             bounds = Some(bounds.map_or((p, p), |(min, max)| (min.min(p), max.max(p))));
         }
     }

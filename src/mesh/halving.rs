@@ -18,8 +18,6 @@ mod halves;
 mod tips;
 mod tube;
 
-use core::f64::consts::FRAC_2_PI;
-
 use fearless_simd::{Simd, dispatch};
 use glam::DVec2;
 
@@ -28,7 +26,7 @@ use self::folds::{Folds, Sides};
 use self::halves::Halves;
 use self::tips::Tip;
 use self::tube::Tube;
-use super::{Effort, MeshOptions, MeshQuality, MeshSink, MeshVertex, Profile};
+use super::{Effort, MeshOptions, MeshQuality, MeshSink, MeshVertex, Profile, rounding_levels};
 use crate::density::tiles::{self, Lattice, Tiles};
 use crate::error::Result;
 use crate::outline::{self, Edge};
@@ -236,8 +234,7 @@ impl HalvingScratch {
         let end = lattice.size.map(|count| 2 * count);
         let end = lattice.place(end) + self.folds.offset(end, [true; 2]);
         let far = lattice.corner.abs().max(end.abs());
-        // Density changes by at most 2 / π over the radius.
-        let rounding = 255.0 * far.max_element() * f64::from(f32::EPSILON) * FRAC_2_PI / radius;
+        let rounding = rounding_levels(far.max_element(), radius);
         if rounding > ROUNDING_SHARE * levels {
             return f64::INFINITY;
         }

@@ -6,15 +6,13 @@
 
 use std::collections::HashMap;
 
-use glam::DVec2;
-
 use super::MeshVertex;
 
 type Triangle = [u32; 3];
 
 /// The triangles without those that have no area left, their neighbours mended.
 pub(super) fn settle(vertices: &[MeshVertex], triangles: Vec<Triangle>) -> Vec<u32> {
-    let at = |index: u32| DVec2::from(vertices[index as usize].position.map(f64::from));
+    let at = |index: u32| vertices[index as usize].at();
     let has_area = |[a, b, c]: Triangle| (at(b) - at(a)).perp_dot(at(c) - at(a)) > 0.0;
     let mut flat: Vec<usize> = (0..triangles.len())
         .filter(|&i| !has_area(triangles[i]))

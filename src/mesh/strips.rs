@@ -20,7 +20,7 @@ use glam::DVec2;
 
 use self::build::{Builder, Span, Template};
 use self::corner::Corner;
-use super::{MeshSink, MeshVertex};
+use super::{MeshSink, MeshVertex, power_of_two_below};
 use crate::density::rounded::Rounded;
 use crate::error::Result;
 
@@ -173,16 +173,14 @@ fn span_of(corners: &[Corner; 4]) -> Option<(Span, f64)> {
 /// there on. Sharp corners are the same whatever the penumbra radius and need none. Just above 1 the umbra's corner begins to be
 /// round: there steps are as long as it is, and none where it is next to nothing.
 fn steps_beside(radius: f64) -> Option<[f64; 2]> {
-    // The number without its fraction bits: the power of two at or below it.
-    let power = |value: f64| f64::from_bits(value.to_bits() >> 52 << 52);
     if radius == 0.0 {
         return None;
     }
     if radius > 1.0 && radius < 1.0 + STEP {
-        let step = power(radius - 1.0);
+        let step = power_of_two_below(radius - 1.0);
         return (step >= LEAST_STEP).then_some([1.0 + step, 1.0 + 2.0 * step]);
     }
-    let step = STEP * power(radius.max(1.0));
+    let step = STEP * power_of_two_below(radius.max(1.0));
     // 1 itself has the sharp umbra of what is below.
     let from = if radius == 1.0 {
         1.0 - STEP

@@ -1,5 +1,7 @@
 //! Triangles that are made and what became of them.
 
+use glam::DVec2;
+
 use super::MeshBuffers;
 
 /// A vertex: 12 bytes, as a GPU takes it.
@@ -10,6 +12,13 @@ pub struct MeshVertex {
     pub position: [f32; 2],
     /// The density there, 0 to 1.
     pub density: f32,
+}
+
+impl MeshVertex {
+    /// Where it is.
+    pub(crate) fn at(&self) -> DVec2 {
+        DVec2::from(self.position.map(f64::from))
+    }
 }
 
 /// Triangles with a density at each vertex, to be interpolated linearly.

@@ -23,16 +23,12 @@ pub(crate) struct Census {
 
 impl Census {
     pub(crate) fn add(&mut self, edge: &Edge) {
-        match edge {
-            Edge::Arc(arc) => {
-                self.arcs += 1.0;
-                self.arc_length += arc.sweep.abs() * arc.radius;
-            }
-            Edge::Line(line) | Edge::Border(line) => {
-                self.lines += 1.0;
-                self.line_length += (line.to - line.from).length();
-            }
-        }
+        let (count, length) = match edge {
+            Edge::Arc(_) => (&mut self.arcs, &mut self.arc_length),
+            Edge::Line(_) | Edge::Border(_) => (&mut self.lines, &mut self.line_length),
+        };
+        *count += 1.0;
+        *length += edge.length();
     }
 }
 

@@ -5,21 +5,21 @@ use core::ops::Range;
 use glam::DVec2;
 
 /// The least and the largest coordinates.
-pub(super) type Bounds = [DVec2; 2];
+pub(super) type Extent = [DVec2; 2];
 
 /// How many boxes are looked at one by one.
 const LEAF: usize = 8;
 
 /// Boxes with their numbers, halved at the middle along the longer side of what holds them, and halved again.
 pub(super) struct Boxes {
-    items: Vec<(Bounds, usize)>,
+    items: Vec<(Extent, usize)>,
     /// What holds all of them, then what holds either half of what the one at `i` does at `2 i + 1` and `2 i + 2`.
-    holders: Vec<Bounds>,
+    holders: Vec<Extent>,
 }
 
 impl Boxes {
     /// Boxes with numbers of their own.
-    pub(super) fn new(items: impl Iterator<Item = (Bounds, usize)>) -> Self {
+    pub(super) fn new(items: impl Iterator<Item = (Extent, usize)>) -> Self {
         let mut boxes = Self {
             items: items.collect(),
             holders: Vec::new(),
@@ -43,7 +43,7 @@ impl Boxes {
         }
         let [width, height] = (bounds[1] - bounds[0]).to_array();
         let axis = usize::from(height > width);
-        let middle = |[from, to]: &Bounds| from[axis] + to[axis];
+        let middle = |[from, to]: &Extent| from[axis] + to[axis];
         let half = items.len() / 2;
         items.select_nth_unstable_by(half, |a, b| {
             middle(&a.0).total_cmp(&middle(&b.0)).then(a.1.cmp(&b.1))
@@ -54,18 +54,18 @@ impl Boxes {
     }
 
     /// What holds all of them.
-    pub(super) fn bounds(&self) -> Bounds {
+    pub(super) fn bounds(&self) -> Extent {
         self.holders[0]
     }
 
     /// The numbers of those that meet `bounds`, in order.
-    pub(super) fn meeting(&self, bounds: Bounds, found: &mut Vec<usize>) {
+    pub(super) fn meeting(&self, bounds: Extent, found: &mut Vec<usize>) {
         found.clear();
         self.find(bounds, 0, 0..self.items.len(), found);
         found.sort_unstable();
     }
 
-    fn find(&self, bounds: Bounds, holder: usize, range: Range<usize>, found: &mut Vec<usize>) {
+    fn find(&self, bounds: Extent, holder: usize, range: Range<usize>, found: &mut Vec<usize>) {
         if !meet(&bounds, &self.holders[holder]) {
             return;
         }
@@ -84,7 +84,7 @@ impl Boxes {
     }
 }
 
-fn meet([min, max]: &Bounds, [from, to]: &Bounds) -> bool {
+fn meet([min, max]: &Extent, [from, to]: &Extent) -> bool {
     min.cmple(*to).all() && from.cmple(*max).all()
 }
 
@@ -106,7 +106,7 @@ mod tests {
             [at, at + size]
         };
         for count in [0, 1, 8, 9, 1000] {
-            let all: Vec<Bounds> = (0..count).map(square).collect();
+            let all: Vec<Extent> = (0..count).map(square).collect();
             let boxes = Boxes::new(all.iter().copied().zip(0..));
             let mut found = vec![7];
             for asked in (0..200).map(|i| square(5 * i)) {

@@ -130,7 +130,7 @@ impl Cut {
     }
 
     fn at(&self, vertex: u32) -> DVec2 {
-        DVec2::from(self.vertices[vertex as usize].position.map(f64::from))
+        self.vertices[vertex as usize].at()
     }
 
     /// The vertex at a point, rounded. A new one gets its density from the triangle or side that it lies on.
@@ -191,13 +191,13 @@ impl Cut {
 
     /// Finds the triangles that are passed, and the densities of the vertices in them and on their sides.
     fn interpolate(&mut self) {
-        let place = |vertex: usize| DVec2::from(self.vertices[vertex].position.map(f64::from));
+        let place = |vertex: usize| self.vertices[vertex].at();
         let points = (self.own..self.given).map(|vertex| ([place(vertex); 2], vertex));
         let points = Boxes::new(points);
         let mut near = Vec::new();
         for triangle in &mut self.triangles {
             let [a, b, c] = triangle.vertices.map(|i| self.vertices[i as usize]);
-            let [at, from, to] = [a, b, c].map(|v| DVec2::from(v.position.map(f64::from)));
+            let [at, from, to] = [a, b, c].map(|v| v.at());
             triangle.passed = triangle
                 .sides
                 .iter()
@@ -205,7 +205,7 @@ impl Cut {
             points.meeting(bounds([at, from, to]), &mut near);
             for &number in &near {
                 let vertex = &mut self.vertices[number];
-                let point = DVec2::from(vertex.position.map(f64::from));
+                let point = vertex.at();
                 let parts =
                     [[from, to], [to, at], [at, from]].map(|[s, t]| (t - s).perp_dot(point - s));
                 let whole: f64 = parts.iter().sum();
@@ -381,8 +381,7 @@ mod tests {
     fn assert_same(vertices: &[MeshVertex], indices: &[u32], side: f32) {
         let mut area = 0.0;
         for corners in indices.as_chunks::<3>().0 {
-            let [a, b, c] =
-                corners.map(|i| DVec2::from(vertices[i as usize].position.map(f64::from)));
+            let [a, b, c] = corners.map(|i| vertices[i as usize].at());
             let double = (b - a).perp_dot(c - a);
             assert!(double > 0.0);
             area += double / 2.0;
