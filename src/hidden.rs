@@ -236,7 +236,7 @@ impl Hidden {
         let push = |row, start, end| spans.push(Span { row, start, end });
         let exact = match shape.cover {
             Cover::Simple => shape.contours.iter().all(Contour::is_of_circles),
-            Cover::Rule(_) => shape.contours.iter().all(Contour::is_straight),
+            Cover::Rule(_) => shape.is_straight(),
         };
         let card = Rounded::of_loop(&edges).filter(|card| {
             let size = (card.max - card.min).max_element() * scale;

@@ -21,7 +21,6 @@ use crate::grid::Grid;
 use crate::light::Projection;
 use crate::outline::{Outline, Winding, resolve};
 use crate::paint::Paint;
-use crate::path::Contour;
 use crate::plan;
 use crate::scratch::Scratch;
 use crate::shape::Shape;
@@ -308,12 +307,6 @@ impl Shadow {
             density::draw(self, grid, options, scratch, &mut sink);
         }
         Ok(())
-    }
-}
-
-impl Shape {
-    fn is_straight(&self) -> bool {
-        self.contours.iter().all(Contour::is_straight)
     }
 }
 

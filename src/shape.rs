@@ -238,6 +238,11 @@ impl Shape {
         self.transformed([1.0, 0.0, 0.0, 1.0, offset[0], offset[1]])
     }
 
+    /// Whether it has no curves.
+    pub(crate) fn is_straight(&self) -> bool {
+        self.contours.iter().all(Contour::is_straight)
+    }
+
     /// How many lines, curves and arcs it is made of.
     pub(crate) fn vertices(&self) -> usize {
         self.contours

@@ -19,7 +19,8 @@ use core::f64::consts::PI;
 
 use glam::DVec2;
 
-use super::{Edge, Line, circular};
+use super::of_shape::circular;
+use super::{Edge, Line};
 use crate::density::flatness;
 use crate::path::{Contour, Curve, Part, Segment};
 

@@ -2,7 +2,8 @@
 
 use glam::DVec2;
 
-use super::{Edge, circular, fit};
+use super::of_shape::circular;
+use super::{Edge, fit};
 use crate::path::{Contour, Segment};
 
 impl Contour {
