@@ -200,7 +200,11 @@ fn outputs(c: &mut Criterion) {
     let (mut mask, mut densities) = (vec![0; pixels(&grid)], vec![0.0; pixels(&grid)]);
     let shadow = black_box(&picture.shadow);
     group.bench_function("a8", |b| {
-        b.iter(|| shadow.fill_a8(&grid, &mut mask, scratch).unwrap());
+        b.iter(|| {
+            shadow
+                .fill_a8(&grid, &mut mask, &PixelOptions::default(), scratch)
+                .unwrap();
+        });
     });
     group.bench_function("f32", |b| {
         b.iter(|| {
@@ -233,7 +237,9 @@ fn tile(c: &mut Criterion) {
         let size = [0, 1].map(|axis| (place.max[axis] - place.min[axis]) as u32);
         let grid = Grid::new(place.min.map(|v| v as f32), size, 1.0).unwrap();
         let mut mask = vec![0; pixels(&grid)];
-        shadow.fill_a8(&grid, &mut mask, &mut scratch).unwrap();
+        shadow
+            .fill_a8(&grid, &mut mask, &PixelOptions::default(), &mut scratch)
+            .unwrap();
         let mut canvas = vec![255; 4 * pixels(&grid)];
         group.throughput(Throughput::Elements(pixels(&grid) as u64));
         group.bench_function(BenchmarkId::new("blend", name), |b| {

@@ -6,7 +6,7 @@
 
 use std::{env, error::Error, path::PathBuf};
 
-use penumbral::{FillRule, Grid, Light, Path, Scratch, Shape, Tone};
+use penumbral::{FillRule, Grid, Light, Path, PixelOptions, Scratch, Shape, Tone};
 use tiny_skia::{Color, Mask, Paint, PathBuilder, Pixmap, Rect, Transform};
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -21,7 +21,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let shape = Shape::path(&Path::from(&card), FillRule::NonZero)?;
     let shadow = Light::android(canvas.width())?.cast(&shape, 24.0, 0.0)?;
     let grid = Grid::new([0.0, 0.0], [mask.width(), mask.height()], 1.0)?;
-    shadow.fill_a8(&grid, mask.data_mut(), &mut Scratch::new())?;
+    shadow.fill_a8(
+        &grid,
+        mask.data_mut(),
+        &PixelOptions::default(),
+        &mut Scratch::new(),
+    )?;
 
     // From the ground up: its colour, the shadow on it in black, the card over both in white.
     let (winding, identity) = (tiny_skia::FillRule::Winding, Transform::identity());

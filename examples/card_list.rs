@@ -7,7 +7,7 @@
 
 use std::{env, error::Error, path::PathBuf};
 
-use penumbral::{Grid, Light, Scratch, Shape};
+use penumbral::{Grid, Light, PixelOptions, Scratch, Shape};
 use tiny_skia::{
     Color, FillRule, LineCap, Mask, Paint, Path, PathBuilder, Pixmap, PixmapPaint, Rect, Stroke,
     Transform,
@@ -96,7 +96,12 @@ impl List {
             .collect::<penumbral::Result<Vec<_>>>()?;
         let casters: Vec<&Shape> = casters.iter().collect();
         let shadow = self.light.cast_all(&casters, ELEVATION, 0.0)?;
-        shadow.fill_a8(&self.grid, self.mask.data_mut(), &mut self.scratch)?;
+        shadow.fill_a8(
+            &self.grid,
+            self.mask.data_mut(),
+            &PixelOptions::default(),
+            &mut self.scratch,
+        )?;
 
         let pixels = Transform::from_scale(SCALE, SCALE)
             .pre_translate(-self.viewport.x(), -self.viewport.y());

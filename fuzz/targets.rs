@@ -369,7 +369,7 @@ pub(crate) fn cast(data: &[u8]) {
     let mut mask = [0; 18];
     assert!(
         shadow
-            .fill_a8_with(&grid, &mut mask, &options, &mut scratch)
+            .fill_a8(&grid, &mut mask, &options, &mut scratch)
             .is_ok()
     );
 }

@@ -347,7 +347,7 @@ mod tests {
                         .fill_f32(&grid, &mut densities, &options, &mut scratch)
                         .unwrap();
                     shadow
-                        .fill_a8_with(&grid, &mut mask, &options, &mut scratch)
+                        .fill_a8(&grid, &mut mask, &options, &mut scratch)
                         .unwrap();
                     shadow
                         .blend_rgba8(&grid, &mut pixels, &paint, &options, &mut scratch)

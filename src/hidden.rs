@@ -270,6 +270,7 @@ const CURVES: f64 = 2.0;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::density::PixelOptions;
     use crate::path::FillRule;
 
     fn spans(hidden: &Hidden, row: u32) -> Vec<(u32, u32)> {
@@ -316,7 +317,9 @@ mod tests {
             hidden.add(&shape, &mut scratch);
             let mut coverage = vec![0; 3600];
             let cover = Shadow::project(&[&shape], &Projection::in_place(0.0));
-            cover.fill_a8(&grid, &mut coverage, &mut scratch).unwrap();
+            cover
+                .fill_a8(&grid, &mut coverage, &PixelOptions::default(), &mut scratch)
+                .unwrap();
             let mut count = 0;
             for row in 0..60 {
                 for column in 0..60 {

@@ -22,7 +22,7 @@
 //! # Quick start
 //!
 //! ```
-//! use penumbral::{Grid, Light, Scratch, Shape, Tolerance};
+//! use penumbral::{Grid, Light, PixelOptions, Scratch, Shape, Tolerance};
 //!
 //! let light = Light::android(360.0)?;
 //! let card = Shape::rounded_rect(24.0, 40.0, 312.0, 160.0, 12.0)?;
@@ -31,7 +31,7 @@
 //! // Pixels: coverage into a buffer of yours, colour is yours to apply.
 //! let grid = Grid::new([0.0, 0.0], [360, 240], 1.0)?;
 //! let mut mask = vec![0; 360 * 240];
-//! shadow.fill_a8(&grid, &mut mask, &mut Scratch::new())?;
+//! shadow.fill_a8(&grid, &mut mask, &PixelOptions::default(), &mut Scratch::new())?;
 //!
 //! // Triangles: position and density at each vertex, to be interpolated linearly.
 //! let mesh = shadow.mesh(Tolerance::levels(4.0)?);

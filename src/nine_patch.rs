@@ -226,7 +226,7 @@ impl NinePatch {
             method: Some(Method::Direct),
             ..PixelOptions::default()
         };
-        shadow.fill_a8_with(&grid, &mut mask, &options, scratch)?;
+        shadow.fill_a8(&grid, &mut mask, &options, scratch)?;
         Ok(Self {
             mask,
             size,

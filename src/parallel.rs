@@ -8,10 +8,10 @@ use crate::scratch::Scratch;
 use crate::shadow::Shadow;
 
 impl Shadow {
-    /// As [`Shadow::fill_a8_with`], in as many bands of rows as there are scratches, on rayon's threads.
+    /// As [`Shadow::fill_a8`], in as many bands of rows as there are scratches, on rayon's threads.
     ///
     /// # Errors
-    /// As [`Shadow::fill_a8_with`], and no scratch at all.
+    /// As [`Shadow::fill_a8`], and no scratch at all.
     pub fn fill_a8_in_bands(
         &self,
         grid: &Grid,
@@ -25,7 +25,7 @@ impl Shadow {
             1,
             options,
             scratches,
-            |band, mask, options, scratch| self.fill_a8_with(band, mask, options, scratch),
+            |band, mask, options, scratch| self.fill_a8(band, mask, options, scratch),
         )
     }
 
@@ -143,7 +143,7 @@ mod tests {
                         .unwrap();
                     let mut mask_alone = vec![200; 157 * 130 + 150];
                     shadow
-                        .fill_a8_with(&grid, &mut mask_alone, &options, &mut scratch)
+                        .fill_a8(&grid, &mut mask_alone, &options, &mut scratch)
                         .unwrap();
                     for threads in [1, 2, 7] {
                         let mut scratches: Vec<Scratch> =

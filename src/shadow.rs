@@ -241,20 +241,12 @@ impl Shadow {
     }
 
     /// Writes the densities on a grid of pixels as 8-bit coverage, 255 where the light's disc is wholly hidden and 0
-    /// outside of the shadow: every pixel of the grid is written, nothing else of the buffer is. Within one level, and half
-    /// of one for the rounding.
+    /// outside of the shadow: every pixel of the grid is written, nothing else of the buffer is. Within the tolerance, and
+    /// half a level for the rounding. Hidden pixels are 0.
     ///
     /// # Errors
-    /// [`Error::BufferSize`](crate::Error::BufferSize) when `mask` is shorter than the grid needs.
-    pub fn fill_a8(&self, grid: &Grid, mask: &mut [u8], scratch: &mut Scratch) -> Result<()> {
-        self.fill_a8_with(grid, mask, &PixelOptions::default(), scratch)
-    }
-
-    /// As [`Shadow::fill_a8`], with options; hidden pixels are 0.
-    ///
-    /// # Errors
-    /// As [`Shadow::fill_a8`], and options for another grid.
-    pub fn fill_a8_with(
+    /// [`Error::BufferSize`](crate::Error::BufferSize) when `mask` is shorter than the grid needs, and options for another grid.
+    pub fn fill_a8(
         &self,
         grid: &Grid,
         mask: &mut [u8],

@@ -138,7 +138,7 @@ impl TiltedShadow {
         tilted::at_point(&self.loops, point)
     }
 
-    /// As [`Shadow::fill_a8_with`](crate::Shadow::fill_a8_with), by the closed form whatever the options' tolerance and method.
+    /// As [`Shadow::fill_a8`](crate::Shadow::fill_a8), by the closed form whatever the options' tolerance and method.
     ///
     /// # Errors
     /// A buffer shorter than the grid needs, and options for another grid.

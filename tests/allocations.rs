@@ -92,7 +92,7 @@ fn a_warm_drawing_takes_no_memory() {
                             ..PixelOptions::default()
                         };
                         shadow
-                            .fill_a8_with(&grid, &mut mask, &options, &mut scratch)
+                            .fill_a8(&grid, &mut mask, &options, &mut scratch)
                             .unwrap();
                         shadow
                             .blend_rgba8(&grid, &mut canvas, &paint, &options, &mut scratch)

@@ -47,7 +47,7 @@ fn drawn(length: usize, hidden: Option<Grid>) -> Result<(), Error> {
         ..PixelOptions::default()
     };
     let shadow = light().cast(&card(), 8.0, 0.0)?;
-    shadow.fill_a8_with(&grid(), &mut vec![0; length], &options, &mut Scratch::new())
+    shadow.fill_a8(&grid(), &mut vec![0; length], &options, &mut Scratch::new())
 }
 
 /// Does something with pixels hidden on a grid of 10 x 10.

@@ -695,10 +695,10 @@ fn rows_apart_hold_the_same_bits_and_nothing_between() {
             .unwrap();
         let (mut bytes, mut bytes_near) = (vec![7; length], vec![7; width * height]);
         case.shadow
-            .fill_a8_with(&apart, &mut bytes, &options, &mut scratch)
+            .fill_a8(&apart, &mut bytes, &options, &mut scratch)
             .unwrap();
         case.shadow
-            .fill_a8_with(&grid, &mut bytes_near, &options, &mut scratch)
+            .fill_a8(&grid, &mut bytes_near, &options, &mut scratch)
             .unwrap();
         let (mut pixels, mut pixels_near) = (vec![150; 4 * length], vec![150; 4 * width * height]);
         case.shadow
@@ -784,7 +784,7 @@ fn bytes_are_densities_rounded() {
                 let floats = densities(&case.shadow, &case.grid, &options, &mut scratch);
                 let mut bytes = vec![7; floats.len()];
                 case.shadow
-                    .fill_a8_with(&case.grid, &mut bytes, &options, &mut scratch)
+                    .fill_a8(&case.grid, &mut bytes, &options, &mut scratch)
                     .unwrap();
                 let error = floats
                     .iter()
@@ -816,7 +816,9 @@ fn bytes_of_neighbours_are_rounded_once() {
         let options = PixelOptions::default();
         let floats = densities(&shadow, &grid, &options, &mut scratch);
         let (mut mask, mut canvas) = (vec![0; floats.len()], vec![0; 4 * floats.len()]);
-        shadow.fill_a8(&grid, &mut mask, &mut scratch).unwrap();
+        shadow
+            .fill_a8(&grid, &mut mask, &PixelOptions::default(), &mut scratch)
+            .unwrap();
         shadow
             .blend_rgba8(&grid, &mut canvas, &paint, &options, &mut scratch)
             .unwrap();
@@ -853,7 +855,7 @@ fn dithered_bytes_are_densities_in_the_mean() {
         let floats = densities(&shadow, &grid, &options, &mut scratch);
         let mut bytes = vec![0; floats.len()];
         shadow
-            .fill_a8_with(&grid, &mut bytes, &options, &mut scratch)
+            .fill_a8(&grid, &mut bytes, &options, &mut scratch)
             .unwrap();
         let errors = floats
             .iter()
@@ -1019,7 +1021,7 @@ fn what_does_not_fit_is_refused() {
         };
         let results = [
             shadow.fill_f32(&grid, &mut vec![0.0; length], &options, &mut scratch),
-            shadow.fill_a8_with(&grid, &mut vec![0; length], &options, &mut scratch),
+            shadow.fill_a8(&grid, &mut vec![0; length], &options, &mut scratch),
             shadow.blend_rgba8(
                 &grid,
                 &mut vec![0; 4 * length],
@@ -1043,13 +1045,13 @@ fn what_does_not_fit_is_refused() {
         ..PixelOptions::default()
     };
     shadow
-        .fill_a8_with(&grid, &mut vec![0; length], &options, &mut scratch)
+        .fill_a8(&grid, &mut vec![0; length], &options, &mut scratch)
         .unwrap();
 
     let options = PixelOptions::default();
     let results = [
         shadow.fill_f32(&grid, &mut vec![0.0; length - 1], &options, &mut scratch),
-        shadow.fill_a8_with(&grid, &mut vec![0; length - 1], &options, &mut scratch),
+        shadow.fill_a8(&grid, &mut vec![0; length - 1], &options, &mut scratch),
         shadow.blend_rgba8(
             &grid,
             &mut vec![0; 4 * length - 1],
@@ -1057,7 +1059,7 @@ fn what_does_not_fit_is_refused() {
             &options,
             &mut scratch,
         ),
-        shadow.fill_a8_with(&apart, &mut vec![0; 300 * 63 + 199], &options, &mut scratch),
+        shadow.fill_a8(&apart, &mut vec![0; 300 * 63 + 199], &options, &mut scratch),
     ];
     assert!(
         results

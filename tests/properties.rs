@@ -79,7 +79,7 @@ proptest! {
         let shadow = cast(&polygon(&ring, rule), radius);
         let grid = Grid::new([-20.0, -20.0], [size, 3], 1.0).unwrap();
         let mut mask = vec![0; 3 * size as usize];
-        shadow.fill_a8(&grid, &mut mask, &mut Scratch::new()).unwrap();
+        shadow.fill_a8(&grid, &mut mask, &PixelOptions::default(), &mut Scratch::new()).unwrap();
         for (index, level) in mask.iter().enumerate() {
             let (x, y) = (index as u32 % size, index as u32 / size);
             let density = shadow.density_at([x as f32 - 19.5, y as f32 - 19.5]);

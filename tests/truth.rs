@@ -156,7 +156,12 @@ fn hard_and_nearly_hard_edges_are_coverage() {
         assert!((shadow.radius() - f64::from(penumbra)).abs() < 1e-12);
         let mut mask = vec![0; 24 * 24];
         shadow
-            .fill_a8(&grid, &mut mask, &mut Scratch::new())
+            .fill_a8(
+                &grid,
+                &mut mask,
+                &PixelOptions::default(),
+                &mut Scratch::new(),
+            )
             .unwrap();
         for y in 0..24 {
             for x in 0..24 {
@@ -185,7 +190,12 @@ fn moved_by_whole_pixels_a_picture_keeps_its_bits() {
         light
             .cast(&card, 3.0, 0.0)
             .unwrap()
-            .fill_a8(&grid, &mut mask, &mut Scratch::new())
+            .fill_a8(
+                &grid,
+                &mut mask,
+                &PixelOptions::default(),
+                &mut Scratch::new(),
+            )
             .unwrap();
         mask
     };
@@ -207,12 +217,22 @@ fn rows_beyond_the_grid_are_left_alone() {
         .unwrap();
     let mut mask = vec![7; 18];
     shadow
-        .fill_a8(&grid, &mut mask, &mut Scratch::new())
+        .fill_a8(
+            &grid,
+            &mut mask,
+            &PixelOptions::default(),
+            &mut Scratch::new(),
+        )
         .unwrap();
     assert_eq!(mask, [[255, 255, 255, 255, 7, 7]; 3].concat());
     assert!(
         shadow
-            .fill_a8(&grid, &mut mask[..15], &mut Scratch::new())
+            .fill_a8(
+                &grid,
+                &mut mask[..15],
+                &PixelOptions::default(),
+                &mut Scratch::new()
+            )
             .is_err()
     );
 }
@@ -234,7 +254,12 @@ fn pixels_per_unit_only_change_the_resolution() {
         let mut mask = vec![0; 1600];
         let grid = Grid::new([0.0, 0.0], [40, 40], factor).unwrap();
         shadow
-            .fill_a8(&grid, &mut mask, &mut Scratch::new())
+            .fill_a8(
+                &grid,
+                &mut mask,
+                &PixelOptions::default(),
+                &mut Scratch::new(),
+            )
             .unwrap();
         mask
     };

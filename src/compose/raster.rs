@@ -89,23 +89,7 @@ impl Renderer {
     /// # Ok::<(), penumbral::Error>(())
     /// ```
     pub fn render(&mut self, scene: &Scene, pixmap: &mut Pixmap) -> Result<()> {
-        self.render_with_progress(scene, pixmap, |_, _| {})
-    }
-
-    /// As [`Renderer::render`], calling `progress` with the number of layers drawn and of all layers after each.
-    ///
-    /// # Errors
-    /// As [`Renderer::render`].
-    pub fn render_with_progress(
-        &mut self,
-        scene: &Scene,
-        pixmap: &mut Pixmap,
-        mut progress: impl FnMut(usize, usize),
-    ) -> Result<()> {
-        self.render_while(scene, pixmap, |done, layers| {
-            progress(done, layers);
-            true
-        })
+        self.render_while(scene, pixmap, |_, _| true)
     }
 
     /// As [`Renderer::render`], as long as `goes_on` says so: it is asked after each layer, of which each band of some rows has its

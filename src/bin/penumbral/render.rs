@@ -26,7 +26,11 @@ fn png(scene: &Scene) -> Result<Vec<u8>, Failure> {
         .ok_or_else(|| format!("no memory for {} x {} pixels", grid.width(), grid.height()))?;
     let bar = output::progress(scene.surfaces().len() + 1, "layers");
     Renderer::new()
-        .render_with_progress(scene, &mut pixmap, |done, _| bar.set_position(done as u64))
+        .render_while(scene, &mut pixmap, |done, all| {
+            bar.set_length(all as u64);
+            bar.set_position(done as u64);
+            true
+        })
         .map_err(|error| error.to_string())?;
     bar.finish_and_clear();
     pixmap.encode_png().map_err(|error| error.to_string())
