@@ -62,6 +62,9 @@ const SIDE: f64 = 0.2;
 const RADIUS: f64 = 0.1;
 const CORNER: f64 = 0.1;
 
+/// How far from a whole pixel a grid may begin besides what `f32` rounds, in pixels: next to nothing.
+const WHOLE: f64 = 1.0 / 1024.0;
+
 /// The sizes of the steps.
 struct Steps {
     radius: f64,
@@ -254,11 +257,12 @@ impl NinePatch {
         self.insets
     }
 
-    /// Blends the mask, stretched to its place, onto premultiplied RGBA8 pixels, source over.
+    /// Blends the mask, stretched to its place, onto premultiplied RGBA8 pixels, source over. The grid has as many pixels a scene unit as
+    /// the key was asked for with, and begins at a whole pixel from the scene's origin on, as places do.
     ///
     /// # Errors
-    /// [`Error::BufferSize`] when `pixels` is shorter than the grid needs; [`Error::OutOfRange`] for a place of another key,
-    /// smaller than the mask or of another size where it does not stretch.
+    /// [`Error::BufferSize`] when `pixels` is shorter than the grid needs; [`Error::OtherGrid`] for one that begins between pixels;
+    /// [`Error::OutOfRange`] for a place of another key, smaller than the mask or of another size where it does not stretch.
     pub fn blend_rgba8(
         &self,
         place: PatchPlace,
@@ -285,7 +289,14 @@ impl NinePatch {
                 });
             }
         }
-        let corner = grid.corner().floor();
+        let corner = grid.corner().round();
+        let off = (grid.corner() - corner).abs();
+        if off
+            .cmpgt(corner.abs() * f64::from(f32::EPSILON) + WHOLE)
+            .any()
+        {
+            return Err(Error::OtherGrid { field: "place" });
+        }
         let first = [corner.x as i64, corner.y as i64];
         let [left, top, right, bottom] = self.insets.map(i64::from);
         let height = i64::from(grid.height());
@@ -385,7 +396,7 @@ mod tests {
     }
 
     #[test]
-    fn no_scale_and_no_place_is_too_large_to_be_refused() {
+    fn scales_places_and_grids_that_do_not_fit_are_refused() {
         let card = Shape::rounded_rect(-40.0, -30.0, 90.0, 60.0, 12.0).unwrap();
         for (spread, elevation) in [(0.3, 1.0), (8.0, 1.0), (1000.0, 5000.0)] {
             let light = Light::directional([0.0, 0.0], spread).unwrap();
@@ -416,6 +427,19 @@ mod tests {
                 .blend_rgba8(place, &grid, &mut pixels, &paint, &mut Scratch::new())
                 .map(|()| pixels.iter().any(|&byte| byte > 0))
         };
+        let between = Grid::new([0.25, 0.0], [20, 20], 1.0).unwrap();
+        let place = PatchPlace {
+            min: [0; 2],
+            max: [1000; 2],
+        };
+        let refused = patch.blend_rgba8(
+            place,
+            &between,
+            &mut [0; 4 * 20 * 20],
+            &paint,
+            &mut Scratch::new(),
+        );
+        assert_eq!(refused, Err(Error::OtherGrid { field: "place" }));
         assert!(blended([i64::MIN; 2], [i64::MAX; 2]).is_err());
         assert!(blended([i64::MAX; 2], [i64::MIN; 2]).is_err());
         assert_eq!(blended([i64::MIN; 2], [-1; 2]), Ok(true));

@@ -22,7 +22,7 @@ const GOLDEN: [(&str, u64); 11] = [
     ("points", 0xed85_f785_6936_3e8b),
     ("dithered paint", 0xea30_b419_f5bb_3e2c),
     ("masks", 0x9fa6_92f9_d4c9_4c87),
-    ("meshes", 0x11ed_48c5_de32_6538),
+    ("meshes", 0x255b_0d07_d6fa_62c0),
     ("pictures", 0x0f0e_9ab9_4355_74f6),
     ("svg", 0x7d94_6a46_4d58_3c20),
 ];

@@ -94,6 +94,36 @@ fn rounded_rectangles(count: u32) {
     println!("{count} rounded rectangles: at most {worst:.3} of the tolerance");
 }
 
+/// What leads from a square corner to a round one may be long: no triangle along it may be turned round.
+#[test]
+fn corners_of_two_kinds_on_long_sides_have_triangles_of_one_turn() {
+    let light = Light::directional([0.0, 0.0], 2.0).unwrap();
+    let mut lots = Lots(11);
+    for index in 0..120 {
+        let mut size = || 10.0 * 60.0_f32.powf(lots.next());
+        let (width, height) = (size(), size());
+        let round = lots.next() * width.min(height) / 2.0;
+        let radii = [
+            [0.0, 0.0, round, round],
+            [round, round, 0.0, 0.0],
+            [0.0, round, round, 0.0],
+            [0.0, round / 5.0, round, round / 2.0],
+        ];
+        let radii = CornerRadii::from(radii[index % 4]);
+        let shape = Shape::rounded_rect(46.89, 35.58, width, height, radii).unwrap();
+        let shadow = light.cast(&shape, 1.0, 0.0).unwrap();
+        for tolerance in [0.5, 1.0, 2.0, 4.0] {
+            let mesh = shadow.mesh(levels(tolerance));
+            sanity_check(&mesh);
+            let error = dense_error(&shadow, &mesh, 4);
+            assert!(
+                mesh.is_complete() && error <= f64::from(tolerance),
+                "{width} x {height}, {radii:?} within {tolerance}: {error}"
+            );
+        }
+    }
+}
+
 #[test]
 fn every_point_of_the_penumbra_lies_in_one_triangle() {
     let light = Light::directional([0.0, 0.0], 10.0).unwrap();

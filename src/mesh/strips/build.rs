@@ -174,7 +174,7 @@ impl Builder {
         }
         self.ends[..count]
             .iter()
-            .all(|end| end.thinnest(&self.triangles) > 0.0)
+            .all(|end| end.is_ordered(&self.triangles))
     }
 
     /// The largest error, in density: looked at more closely as long as it is not too large.
@@ -201,7 +201,7 @@ impl Builder {
         if let [from, to] = ends {
             for share in SHARES_BETWEEN {
                 between.mix(from, to, share);
-                if between.thinnest(triangles) <= 0.0 {
+                if !between.is_ordered(triangles) {
                     return f64::INFINITY;
                 }
                 let error = measure.error(between, fan_of, triangles, Look::Tops { limit });

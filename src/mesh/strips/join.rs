@@ -2,9 +2,10 @@
 
 use glam::DVec2;
 
-/// A vertex of a ring: where it comes round the middle, in quarters, and its number.
+/// A vertex of a ring: whose corner's it is, where it comes round the middle, in quarters, and its number.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct RingVertex {
+    pub(super) quarter: usize,
     pub(super) turn: f64,
     pub(super) index: u32,
     pub(super) at: DVec2,
@@ -14,21 +15,31 @@ pub(super) struct RingVertex {
 pub(super) fn join(outer: &[RingVertex], inner: &[RingVertex], triangles: &mut Vec<[u32; 3]>) {
     let at = |ring: &[RingVertex], i: usize| {
         let vertex = ring[i % ring.len()];
-        let turns = if i < ring.len() { 0.0 } else { 4.0 };
-        (vertex.turn + turns, vertex.index)
+        let rounds = i / ring.len();
+        let turn = vertex.turn + 4.0 * rounds as f64;
+        (vertex.quarter + 4 * rounds, turn, vertex.index)
+    };
+    // What leads from corner to corner comes after all of the one and before all of the other: it may be of any length, and what it
+    // faced of a corner would be needles as long.
+    let middle = |(from, turn, _): (usize, f64, u32), (to, next, _): (usize, f64, u32)| {
+        if from == to {
+            f64::midpoint(turn, next)
+        } else {
+            to as f64
+        }
     };
     let (mut i, mut j) = (0, 0);
     while i < outer.len() || j < inner.len() {
-        let (from, a) = at(outer, i);
-        let (to, next) = at(outer, i + 1);
-        let (inner_from, b) = at(inner, j);
-        let (inner_to, inner_next) = at(inner, j + 1);
+        let [from, to] = [i, i + 1].map(|i| at(outer, i));
+        let [inner_from, inner_to] = [j, j + 1].map(|j| at(inner, j));
+        let (a, b) = (from.2, inner_from.2);
+        let is_outer_first = middle(from, to) <= middle(inner_from, inner_to);
         // The side whose middle comes first: its triangle's apex is about opposite.
-        if j == inner.len() || (i < outer.len() && from + to <= inner_from + inner_to) {
-            push([a, next, b], triangles);
+        if j == inner.len() || (i < outer.len() && is_outer_first) {
+            push([a, to.2, b], triangles);
             i += 1;
         } else {
-            push([a, inner_next, b], triangles);
+            push([a, inner_to.2, b], triangles);
             j += 1;
         }
     }

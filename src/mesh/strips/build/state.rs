@@ -10,6 +10,9 @@ use crate::mesh::strips::{APART, SIGNS};
 /// How much of what would balance the samples beside a vertex it is moved by.
 const BALANCE: f64 = 0.8;
 
+/// A long side, in penumbra radii: a triangle that is turned round on one longer yet is next to level on all.
+const LONG: f64 = 65_536.0;
+
 /// Vertices nearer than this, in penumbra radii, are one.
 const SAME: f64 = 1e-3;
 
@@ -82,6 +85,7 @@ impl State {
                 let point = points[i];
                 let turn = point.turn();
                 let mut vertex = RingVertex {
+                    quarter,
                     turn: quarter as f64 + if mirrored { 1.0 - turn } else { turn },
                     index: self.places.len() as u32,
                     at: sign * (half - corner.tip + point.at),
@@ -123,7 +127,30 @@ impl State {
         }));
     }
 
-    /// The least height of a triangle; not above 0 where one is turned round.
+    /// Whether no triangle is turned round, however long the sides are between corners that do not feel each other.
+    pub(super) fn is_ordered(&self, triangles: &[[u32; 3]]) -> bool {
+        let long = [0, 1].map(|axis: usize| match self.corners[0].far[axis].is_finite() {
+            true => 0.0,
+            false => LONG,
+        });
+        let is_left = |longer: DVec2| {
+            triangles.iter().all(|corners| {
+                let [a, b, c] = corners.map(|i| {
+                    let place = &self.places[i as usize];
+                    place.at + SIGNS[place.quarter] * longer
+                });
+                (b - a).perp_dot(c - a) > 0.0
+            })
+        };
+        // Twice an area is a length of each side times a number, and one of both.
+        let [x, y] = long;
+        [[0.0, 0.0], [x, 0.0], [0.0, y], [x, y]]
+            .map(DVec2::from)
+            .into_iter()
+            .all(is_left)
+    }
+
+    /// The least height of a triangle.
     pub(super) fn thinnest(&self, triangles: &[[u32; 3]]) -> f64 {
         let height = |corners: &[u32; 3]| {
             let [a, b, c] = corners.map(|i| self.places[i as usize].at);
