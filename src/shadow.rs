@@ -4,6 +4,7 @@
 //! as every caster parallel to its receiver has them, are kept as an outline and that radius.
 
 mod census;
+mod crowding;
 mod drawn;
 mod parts;
 

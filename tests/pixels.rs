@@ -1115,3 +1115,89 @@ fn ends_of_thin_bars_keep_the_tolerance_of_averages() {
     }
     println!("{worst:.3} levels at most");
 }
+
+/// Densities of shapes on a grid of 100 x 100 pixels by the plan's choice within a tolerance.
+fn drawn_within(shadow: &Shadow, levels: f32, scratch: &mut Scratch) -> Vec<f32> {
+    let grid = Grid::new([0.0, 0.0], [100, 100], 1.0).unwrap();
+    let options = PixelOptions {
+        tolerance: Tolerance::levels(levels).unwrap(),
+        ..PixelOptions::default()
+    };
+    densities(shadow, &grid, &options, scratch)
+}
+
+/// Single precision tells the pixels of an outline that is millions of pixels large no more apart.
+#[test]
+fn corners_of_the_largest_outlines_keep_their_tolerance() {
+    let (mut scratch, mut summary) = (Scratch::new(), Summary::default());
+    for (index, size) in [[1e6, 1e6], [5e6, 7.0], [10.0, 1e7], [1.0, 3e6], [7e6, 7e6]]
+        .into_iter()
+        .enumerate()
+    {
+        let [width, height] = size;
+        let rect = Shape::rounded_rect(35.3, 18.7, width, height, 0.4).unwrap();
+        let triangle = [[35.3, 18.7], [35.3 + width, 18.7], [35.3, 18.7 + height]];
+        let triangle = Shape::polygon(&[triangle.to_vec()], penumbral::FillRule::NonZero).unwrap();
+        for shape in [rect, triangle] {
+            for radius in [0.0, 0.6, 3.0, 5.0, 20.0] {
+                let light = Light::directional([0.0, 0.0], radius).unwrap();
+                let shadow = light.cast(&shape, 1.0, 0.0).unwrap();
+                let exact = densities(
+                    &shadow,
+                    &Grid::new([0.0, 0.0], [100, 100], 1.0).unwrap(),
+                    &by(Some(Method::Exact)),
+                    &mut scratch,
+                );
+                for levels in [0.5, 1.0, 4.0] {
+                    let drawn = drawn_within(&shadow, levels, &mut scratch);
+                    let label = format!("case {index}, r {radius}");
+                    summary.add(
+                        format!("within {levels}"),
+                        worst_of(&drawn, &exact),
+                        levels,
+                        &label,
+                    );
+                }
+            }
+        }
+    }
+    summary.finish();
+}
+
+/// What chords cut off of many curves in one disc adds up.
+#[test]
+fn crowds_of_curves_keep_their_tolerance() {
+    let (mut scratch, mut summary) = (Scratch::new(), Summary::default());
+    let circles: Vec<Shape> = (0..900_u16)
+        .map(|i| [3.0 + 3.0 * f32::from(i % 30), 3.0 + 3.0 * f32::from(i / 30)])
+        .map(|center| Shape::circle(center, 1.0).unwrap())
+        .collect();
+    // Twice the same, to be united; once, they are arcs.
+    let twice: Vec<&Shape> = circles.iter().chain(&circles).collect();
+    for radius in [4.0, 10.0, 40.0] {
+        let light = Light::directional([0.0, 0.0], radius).unwrap();
+        let expected = light.cast_all(&circles, 1.0, 0.0).unwrap();
+        let united = light.cast_all(&twice, 1.0, 0.0).unwrap();
+        for point in [[50.0, 50.0], [30.0, 47.0], [4.2, 7.9]] {
+            let error = (expected.density_at(point) - united.density_at(point)).abs() * 255.0;
+            summary.add(
+                "a point".to_owned(),
+                error as f32,
+                0.02,
+                &format!("r {radius}, {point:?}"),
+            );
+        }
+        let exact = drawn_within(&expected, 0.25, &mut scratch);
+        for levels in [1.0, 4.0, 8.0] {
+            let drawn = drawn_within(&united, levels, &mut scratch);
+            let label = format!("r {radius}");
+            summary.add(
+                format!("within {levels}"),
+                worst_of(&drawn, &exact),
+                levels,
+                &label,
+            );
+        }
+    }
+    summary.finish();
+}

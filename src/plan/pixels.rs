@@ -29,6 +29,8 @@ struct Work {
     pixels: f64,
     /// The larger side of the outline's box.
     extent: f64,
+    /// Whether no curve is drawn as something else.
+    is_fixed: bool,
     /// Pixels whose discs may meet lines, added up over the lines, and the same for arcs.
     lines: f64,
     arcs: f64,
@@ -53,6 +55,7 @@ impl Work {
             radius,
             pixels: size.x * size.y,
             extent: shadow.extent() * per_unit,
+            is_fixed: shadow.is_fixed(),
             lines: met(census.lines, census.line_length),
             arcs: met(census.arcs, census.arc_length),
         }
@@ -89,11 +92,14 @@ impl Work {
         };
         Candidate {
             method: Method::Direct,
-            error_levels: if self.is_averaged() {
-                direct::AVERAGED
-            } else {
-                direct::curves(self.radius, levels) * levels + direct::ROUNDING
-            },
+            error_levels: direct::rounding(self.extent, self.radius)
+                + if self.is_averaged() {
+                    direct::AVERAGED
+                } else if self.is_fixed {
+                    direct::ROUNDING
+                } else {
+                    direct::curves(self.radius, levels) * levels + direct::ROUNDING
+                },
             cost_ns: COSTS.pixel * self.pixels
                 + (COSTS.line * self.lines + COSTS.arc * self.arcs) * self.averages(COSTS.average),
             why,

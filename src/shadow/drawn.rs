@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use super::crowding::crowding;
 use super::{Shadow, unite};
 use crate::density;
 use crate::outline::{self, Edge, Fineness, Outline};
@@ -12,11 +13,18 @@ use crate::shape::{Cover, Shape};
 const FINEST: f64 = 1.0 / 1_073_741_824.0;
 
 impl Shadow {
-    /// The outline with curves cut into lines within `flatness` (scene units) of them.
+    /// The outline with curves cut into lines within `flatness` (scene units) of them, nearer where a disc sees many.
     pub(crate) fn outline(&self, flatness: f64) -> Cow<'_, Outline> {
         if self.curved.is_empty() {
             return Cow::Borrowed(&self.fixed);
         }
+        // Of what is so hard that chords are as short as they may be, no disc sees many.
+        let is_hard = self.radius <= self.extent() * FINEST;
+        let crowding = if is_hard {
+            1.0
+        } else {
+            crowding(self.curved.iter().flatten(), self.radius)
+        };
         let mut outline = self.fixed.clone();
         for group in &self.curved {
             let extent = group
@@ -25,7 +33,7 @@ impl Shadow {
                 .map(|(min, max)| (max - min).max_element())
                 .fold(0.0, f64::max);
             // For a nearly hard shadow the rule would ask for chords without end.
-            let flatness = flatness.max(extent * FINEST);
+            let flatness = (flatness / crowding).max(extent * FINEST);
             let outlines: Vec<Outline> = group
                 .iter()
                 .map(|shape| Outline::of_flattened(shape, flatness))

@@ -43,7 +43,7 @@ pub(crate) fn run(path: &Path, file: &Path, options: MeshOptions) -> Result<(), 
         .filter(|(_, mesh)| !mesh.is_complete())
     {
         output::complain(&format!(
-            "surfaces[{index}]: the mesh reached its limit of vertices with an error of {:.2} levels",
+            "surfaces[{index}]: the mesh is not complete: it is up to {:.2} levels wrong",
             mesh.error_levels()
         ));
     }

@@ -1,0 +1,52 @@
+//! How much of curves one disc may see.
+
+use std::collections::HashMap;
+
+use glam::DVec2;
+
+use crate::path::Segment;
+use crate::shape::Shape;
+
+/// A curve that is longer than so many radii is taken for one of that length: of the rest no disc sees as much.
+const LONGEST: f64 = 64.0;
+
+/// How many times its own circumference a disc may see of the curves of some shapes, at least 1. Curves are cut into chords as if there
+/// were one that long: of more, areas between chords and curves add up.
+///
+/// Lengths are counted by squares of the radius's size, of which a disc meets nine at most.
+pub(super) fn crowding<'a>(shapes: impl Iterator<Item = &'a Shape>, radius: f64) -> f64 {
+    let mut lengths: HashMap<[i64; 2], f64> = HashMap::new();
+    let mut chords = Vec::new();
+    for contour in shapes.flat_map(|shape| &shape.contours) {
+        let mut from = contour.start;
+        for segment in &contour.segments {
+            if !matches!(segment, Segment::Line(_)) {
+                chords.clear();
+                segment.flatten(from, radius / 8.0, &mut chords);
+                let mut start = from;
+                for &end in &chords {
+                    add(start, end, radius, &mut lengths);
+                    start = end;
+                }
+            }
+            from = segment.end();
+        }
+    }
+    let about = |&[x, y]: &[i64; 2]| {
+        let near = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| [x + dx, y + dy]));
+        near.filter_map(|square| lengths.get(&square)).sum::<f64>()
+    };
+    let most = lengths.keys().map(about).fold(0.0, f64::max);
+    (most / (core::f64::consts::TAU * radius)).max(1.0)
+}
+
+/// Adds a chord's length to the squares that it is in.
+fn add(start: DVec2, end: DVec2, radius: f64, lengths: &mut HashMap<[i64; 2], f64>) {
+    let length = (end - start).length().min(LONGEST * radius);
+    let count = (length / radius).ceil().max(1.0);
+    for part in 0..count as u32 {
+        let at = start.lerp(end, (f64::from(part) + 0.5) / count) / radius;
+        let square = [at.x, at.y].map(|v| v.floor() as i64);
+        *lengths.entry(square).or_default() += length / count;
+    }
+}
