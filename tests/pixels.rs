@@ -1164,6 +1164,34 @@ fn corners_of_the_largest_outlines_keep_their_tolerance() {
     summary.finish();
 }
 
+/// Two small corners in one pixel are more than the finest tolerance off in single precision.
+#[test]
+fn small_corners_without_a_penumbra_keep_the_finest_tolerance() {
+    let radii = [7.319_847, 2.361_840_7, 2.361_840_7, 6.504_741_7];
+    let shape = Shape::rounded_rect(10.196_123, 5.196_049, 4.723_681_4, 54.794_704, radii).unwrap();
+    let shadow = Light::directional([0.0, 0.0], 0.0)
+        .unwrap()
+        .cast(&shape, 1.0, 0.0)
+        .unwrap();
+    let (grid, mut scratch) = (
+        Grid::new([0.0, 0.0], [60, 80], 1.058_496_5).unwrap(),
+        Scratch::new(),
+    );
+    let mut draw = |method, levels| {
+        let options = PixelOptions {
+            method,
+            tolerance: Tolerance::levels(levels).unwrap(),
+            ..PixelOptions::default()
+        };
+        densities(&shadow, &grid, &options, &mut scratch)
+    };
+    let exact = draw(Some(Method::Exact), 1.0);
+    for levels in [0.0625, 0.1, 0.125, 1.0] {
+        let error = worst_of(&draw(None, levels), &exact);
+        assert!(error <= levels, "within {levels}: {error}");
+    }
+}
+
 /// What chords cut off of many curves in one disc adds up.
 #[test]
 fn crowds_of_curves_keep_their_tolerance() {

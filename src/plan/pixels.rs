@@ -96,7 +96,7 @@ impl Work {
                 + if self.is_averaged() {
                     direct::AVERAGED
                 } else if self.is_fixed {
-                    direct::ROUNDING
+                    direct::FIXED
                 } else {
                     direct::curves(self.radius, levels) * levels + direct::ROUNDING
                 },
