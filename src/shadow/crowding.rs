@@ -7,8 +7,8 @@ use glam::DVec2;
 use crate::path::Segment;
 use crate::shape::Shape;
 
-/// A curve that is longer than so many radii is taken for one of that length: of the rest no disc sees as much.
-const LONGEST: f64 = 64.0;
+/// A chord that is longer than so many radii is counted as one of that length, about its middle: such curves are nearly straight for a disc.
+const LONGEST: f64 = 4.0;
 
 /// How many times its own circumference a disc may see of the curves of some shapes, at least 1. Curves are cut into chords as if there
 /// were one that long: of more, areas between chords and curves add up.
@@ -42,10 +42,12 @@ pub(super) fn crowding<'a>(shapes: impl Iterator<Item = &'a Shape>, radius: f64)
 
 /// Adds a chord's length to the squares that it is in.
 fn add(start: DVec2, end: DVec2, radius: f64, lengths: &mut HashMap<[i64; 2], f64>) {
-    let length = (end - start).length().min(LONGEST * radius);
+    let (chord, middle) = (end - start, start.midpoint(end));
+    let length = chord.length().min(LONGEST * radius);
+    let way = chord.normalize_or_zero() * length;
     let count = (length / radius).ceil().max(1.0);
     for part in 0..count as u32 {
-        let at = start.lerp(end, (f64::from(part) + 0.5) / count) / radius;
+        let at = (middle + way * ((f64::from(part) + 0.5) / count - 0.5)) / radius;
         let square = [at.x, at.y].map(|v| v.floor() as i64);
         *lengths.entry(square).or_default() += length / count;
     }
