@@ -20,10 +20,11 @@ impl Shadow {
         }
         // Of what is so hard that chords are as short as they may be, no disc sees many.
         let is_hard = self.radius <= self.extent() * FINEST;
-        let crowding = if is_hard {
-            1.0
-        } else {
-            crowding(self.curved.iter().flatten(), self.radius)
+        let crowding = match self.hull() {
+            Some((corner, _)) if !is_hard => {
+                crowding(self.curved.iter().flatten(), self.radius, corner)
+            }
+            _ => 1.0,
         };
         let mut outline = self.fixed.clone();
         for group in &self.curved {
