@@ -15,7 +15,7 @@ use crate::shadow::Shadow;
 /// The meshes last used, at most a fixed number of them. A shadow that was moved finds the mesh that it had before.
 ///
 /// Shadows are taken for the same where their outlines, wherever they are, differ by so little that a tenth of the tolerance
-/// covers it; with penumbra radius 0, and for other [profiles](Profile) than the disc's, where they do not differ at all.
+/// covers it; with penumbra radius 0, and for other [profiles](crate::Profile) than the disc's, where they do not differ at all.
 /// A shadow whose numbers are rounded differently elsewhere may be made anew, never drawn wrong.
 ///
 /// The mesh of a rounded rectangle whose ends do not feel each other across the penumbra is four corners and straight strips
