@@ -201,9 +201,7 @@ fn outputs(c: &mut Criterion) {
     let shadow = black_box(&picture.shadow);
     group.bench_function("a8", |b| {
         b.iter(|| {
-            shadow
-                .fill_a8(&grid, &mut mask, &PixelOptions::default(), scratch)
-                .unwrap();
+            shadow.fill_a8(&grid, &mut mask, &options, scratch).unwrap();
         });
     });
     group.bench_function("f32", |b| {

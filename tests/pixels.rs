@@ -817,7 +817,7 @@ fn bytes_of_neighbours_are_rounded_once() {
         let floats = densities(&shadow, &grid, &options, &mut scratch);
         let (mut mask, mut canvas) = (vec![0; floats.len()], vec![0; 4 * floats.len()]);
         shadow
-            .fill_a8(&grid, &mut mask, &PixelOptions::default(), &mut scratch)
+            .fill_a8(&grid, &mut mask, &options, &mut scratch)
             .unwrap();
         shadow
             .blend_rgba8(&grid, &mut canvas, &paint, &options, &mut scratch)
@@ -1116,6 +1116,20 @@ fn ends_of_thin_bars_keep_the_tolerance_of_averages() {
     println!("{worst:.3} levels at most");
 }
 
+/// Adds how far a shadow on that grid is from its exact densities within some tolerances.
+fn add_within(
+    summary: &mut Summary,
+    tolerances: [f32; 3],
+    (shadow, exact): (&Shadow, &[f32]),
+    label: &str,
+    scratch: &mut Scratch,
+) {
+    for levels in tolerances {
+        let error = worst_of(&drawn_within(shadow, levels, scratch), exact);
+        summary.add(format!("within {levels}"), error, levels, label);
+    }
+}
+
 /// Densities of shapes on a grid of 100 x 100 pixels by the plan's choice within a tolerance.
 fn drawn_within(shadow: &Shadow, levels: f32, scratch: &mut Scratch) -> Vec<f32> {
     let grid = Grid::new([0.0, 0.0], [100, 100], 1.0).unwrap();
@@ -1148,16 +1162,9 @@ fn corners_of_the_largest_outlines_keep_their_tolerance() {
                     &by(Some(Method::Exact)),
                     &mut scratch,
                 );
-                for levels in [0.5, 1.0, 4.0] {
-                    let drawn = drawn_within(&shadow, levels, &mut scratch);
-                    let label = format!("case {index}, r {radius}");
-                    summary.add(
-                        format!("within {levels}"),
-                        worst_of(&drawn, &exact),
-                        levels,
-                        &label,
-                    );
-                }
+                let label = format!("case {index}, r {radius}");
+                let drawn = (&shadow, exact.as_slice());
+                add_within(&mut summary, [0.5, 1.0, 4.0], drawn, &label, &mut scratch);
             }
         }
     }
@@ -1216,16 +1223,9 @@ fn crowds_of_curves_keep_their_tolerance() {
             );
         }
         let exact = drawn_within(&expected, 0.25, &mut scratch);
-        for levels in [1.0, 4.0, 8.0] {
-            let drawn = drawn_within(&united, levels, &mut scratch);
-            let label = format!("r {radius}");
-            summary.add(
-                format!("within {levels}"),
-                worst_of(&drawn, &exact),
-                levels,
-                &label,
-            );
-        }
+        let label = format!("r {radius}");
+        let drawn = (&united, exact.as_slice());
+        add_within(&mut summary, [1.0, 4.0, 8.0], drawn, &label, &mut scratch);
     }
     summary.finish();
 }
