@@ -13,7 +13,7 @@ use std::time::Instant;
 use std::{env, fs, io, process, thread};
 
 use image::{DynamicImage, ImageBuffer, Luma, RgbaImage};
-use penumbral::{MAX_SCENE_LENGTH, MAX_SEGMENTS};
+use penumbral::{Light, MAX_SCENE_LENGTH, MAX_SEGMENTS, Pose, Shape, Tolerance};
 use serde_json::Value;
 
 /// One card of 40 x 20 in the middle of the canvas, right below the light.
@@ -181,6 +181,21 @@ fn card_with(old: &str, new: &str) -> String {
 fn card_of(surface: &str) -> String {
     let start = CARD.find(r#"{"shape""#).unwrap();
     format!("{}{surface}]}}", &CARD[..start])
+}
+
+/// A folder with a tilted card and an image under two lights.
+fn with_tilted_and_image() -> Folder {
+    let folder = Folder::with_scene(
+        r#"{"canvas": [200, 200], "light": {"x": 80, "y": 30, "z": 300, "radius": 120},
+            "lights": [{"x": 180, "y": 30, "z": 300, "radius": 120, "key": 0.1}], "surfaces": [
+            {"shape": "rrect", "x": 50, "y": 60, "w": 60, "h": 40, "elevation": 40,
+             "tilt": {"pivot": [80, 80], "axis": [0, 1], "degrees": 28.647889756541161}},
+            {"shape": "rrect", "x": 120, "y": 20, "w": 30, "h": 30, "elevation": 8, "image": "window.png"}]}"#,
+    );
+    RgbaImage::new(2, 2)
+        .save(folder.file("window.png"))
+        .unwrap();
+    folder
 }
 
 fn grey16(picture: &DynamicImage) -> &ImageBuffer<Luma<u16>, Vec<u16>> {
@@ -417,7 +432,15 @@ mod mesh {
             assert_eq!(shadows.len(), 4);
             for shadow in &shadows {
                 let keys: Vec<&String> = shadow.as_object().unwrap().keys().collect();
-                assert_eq!(keys, ["densities", "error_levels", "indices", "positions"]);
+                let named = [
+                    "densities",
+                    "error_levels",
+                    "indices",
+                    "light",
+                    "positions",
+                    "surface",
+                ];
+                assert_eq!(keys, named);
                 let error = shadow["error_levels"].as_f64().unwrap();
                 assert!((0.0..=tolerance).contains(&error), "{error} of {tolerance}");
                 let densities = numbers(&shadow["densities"]);
@@ -442,6 +465,42 @@ mod mesh {
                 })
                 .collect();
             assert!(middles.is_sorted(), "{middles:?}");
+        }
+    }
+
+    #[test]
+    fn tilted_surfaces_have_their_own_under_each_light_and_images_none() {
+        let folder = with_tilted_and_image();
+        let run = folder.run("mesh scene.json -o out.json");
+        assert_eq!(run.status, Some(0));
+        let complaint = "penumbral: surfaces[1]: the shadow of an image has no triangles";
+        assert!(run.stderr.starts_with(complaint), "{}", run.stderr);
+        let value: Value = serde_json::from_str(&folder.text("out.json")).unwrap();
+        let shadows = value["shadows"].as_array().unwrap();
+        let numbered: Vec<_> = shadows
+            .iter()
+            .map(|shadow| ["surface", "light"].map(|key| shadow[key].as_u64().unwrap()))
+            .collect();
+        assert_eq!(numbered, [[0, 0], [0, 1]]);
+        let pose = Pose::turned(40.0, [80.0, 80.0], [0.0, 1.0], 0.5).unwrap();
+        let card = Shape::rect(50.0, 60.0, 60.0, 40.0).unwrap();
+        for (shadow, x) in shadows.iter().zip([80.0, 180.0]) {
+            let light = Light::new([x, 30.0, 300.0], 120.0).unwrap();
+            let mesh = light
+                .cast_posed(&card, &pose, 0.0)
+                .unwrap()
+                .mesh(Tolerance::ONE_LEVEL);
+            assert_eq!(length(&shadow["indices"]), mesh.indices().len());
+            let [near, far] = [0, 1].map(|end: usize| {
+                let xs = mesh.vertices().iter().map(|v| f64::from(v.position[end]));
+                xs.sum::<f64>() / mesh.vertices().len() as f64
+            });
+            let middle = |axis: usize| {
+                let places = shadow["positions"].as_array().unwrap();
+                let sum: f64 = places.iter().map(|place| numbers(place)[axis]).sum();
+                sum / places.len() as f64
+            };
+            assert!((middle(0) - near).abs() < 1e-3 && (middle(1) - far).abs() < 1e-3);
         }
     }
 
@@ -492,6 +551,25 @@ mod mesh {
 
 mod explain {
     use super::*;
+
+    #[test]
+    fn tilted_surfaces_and_images_are_told_apart_under_each_light() {
+        let text = with_tilted_and_image().succeed("explain scene.json");
+        let lines: Vec<&str> = text.lines().collect();
+        let heads = [0, 3, 6, 8].map(|line: usize| lines[line]);
+        let expected = [
+            "surfaces[0], elevation 40, light 0",
+            "surfaces[0], elevation 40, light 1",
+            "surfaces[1], elevation 8, light 0",
+            "surfaces[1], elevation 8, light 1",
+        ];
+        assert_eq!((heads, lines.len()), (expected, 10), "{text}");
+        assert!(lines[1].starts_with("  bounds  x ") && lines[1] != lines[4]);
+        assert_eq!(
+            lines[7],
+            "  method  by the alpha of an image of 2 x 2 pixels"
+        );
+    }
 
     #[test]
     fn each_surface_has_its_numbers() {

@@ -38,7 +38,7 @@ impl ShadowMesh {
 /// Meshes as one SVG picture, one pixel a unit, black with the densities as opacity. Each triangle is filled by the linear
 /// gradient that equals its interpolation.
 #[must_use]
-pub fn meshes_to_svg(meshes: &[ShadowMesh]) -> String {
+pub fn meshes_to_svg<'a>(meshes: impl IntoIterator<Item = &'a ShadowMesh>) -> String {
     let mut svg = Svg::new(1.0);
     let mut bounds: Option<(DVec2, DVec2)> = None;
     for mesh in meshes {

@@ -184,6 +184,24 @@ impl Surface {
         self.elevation
     }
 
+    /// How the shape's plane lies, if the surface is tilted.
+    #[must_use]
+    pub fn pose(&self) -> Option<&Pose> {
+        match &self.form {
+            Form::Posed(pose) => Some(pose),
+            Form::Level | Form::Image(..) => None,
+        }
+    }
+
+    /// The image that the surface is, if it is one.
+    #[must_use]
+    pub fn as_image(&self) -> Option<&Image> {
+        match &self.form {
+            Form::Image(image, _) => Some(image),
+            Form::Level | Form::Posed(_) => None,
+        }
+    }
+
     /// The fill; its alpha and the opacity multiply.
     #[must_use]
     pub fn fill(&self) -> Color {
