@@ -244,7 +244,7 @@ impl Shadow {
             // What errors are measured against may itself be a little off, as long as that is stated.
             let share = FIELD_SHARE * levels;
             let fine = flatness(share, radius, 0.0);
-            let edges = self.outline(fine).moved(-center);
+            let edges = self.outline_within(share, 0.0).moved(-center);
             let curved = !self.is_fixed() || edges.edges().any(|e| matches!(e, Edge::Arc(_)));
             let unsure = if curved { CURVED * share / 255.0 } else { 0.0 } + cells::NOISE;
             let loops: Vec<_> = edges

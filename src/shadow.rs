@@ -41,8 +41,8 @@ pub struct Shadow {
     hull: Option<(DVec2, DVec2)>,
     /// The outline as exact as `density_at` promises, made when it is first needed.
     exact: OnceLock<Outline>,
-    /// The outline for pixels as it was first asked for, and how far its lines are from their curves.
-    drawn: OnceLock<(f64, Outline)>,
+    /// The outline for pixels as it was first asked for: with lines that move no density by so many levels, for pixels of that side.
+    drawn: OnceLock<([f64; 2], Outline)>,
     /// The outline as a rounded rectangle, if it is one.
     rounded: Option<Rounded>,
     /// Shadows of one radius that are this one together and do not meet; none if it is a single one.

@@ -32,8 +32,21 @@ pub(crate) fn at_point<'a>(
             Edge::Arc(arc) => of_arc(&arc.mapped(factor, place), disc),
         })
         .sum();
-    // Rounding may leave some 1e-16 beyond either end.
-    (double_area / TAU).clamp(0.0, 1.0)
+    settled(double_area / TAU)
+}
+
+/// A density as near to 0 or 1 as rounding leaves one where there is nothing, or all: some 1e-16 for each edge.
+const ROUNDING: f64 = 1e-12;
+
+/// A density without the rounding that a sum of angles leaves about nothing and about all.
+pub(super) fn settled(density: f64) -> f64 {
+    if density < ROUNDING {
+        0.0
+    } else if density > 1.0 - ROUNDING {
+        1.0
+    } else {
+        density
+    }
 }
 
 /// The angle from `a` to `b` seen from the origin, within a half turn.

@@ -8,7 +8,7 @@ use core::ops::Range;
 
 use glam::DVec2;
 
-use super::area::of_line;
+use super::area::{of_line, settled};
 use super::{Sink, averaged_side, quadrature};
 use crate::grid::Grid;
 use crate::hidden::Hidden;
@@ -29,7 +29,7 @@ pub(crate) fn at_point(loops: &[Vec<Circle>], point: DVec2) -> f64 {
 
 /// A caster is seen from above or from below: the sign tells which.
 fn fraction(double_area: f64) -> f64 {
-    (double_area.abs() / TAU).min(1.0)
+    settled(double_area.abs() / TAU)
 }
 
 fn double_area(circles: &[Circle], point: DVec2) -> f64 {

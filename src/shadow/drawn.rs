@@ -13,19 +13,28 @@ use crate::shape::{Cover, Shape};
 const FINEST: f64 = 1.0 / 1_073_741_824.0;
 
 impl Shadow {
-    /// The outline with curves cut into lines within `flatness` (scene units) of them, nearer where a disc sees many.
+    /// The outline with curves cut into lines that move no density by more than `levels`, averaged over pixels of side `pixel` (scene
+    /// units) where the penumbra is narrow.
+    pub(crate) fn outline_within(&self, levels: f64, pixel: f64) -> Cow<'_, Outline> {
+        if self.curved.is_empty() {
+            return Cow::Borrowed(&self.fixed);
+        }
+        // What a density is about, a disc or a pixel.
+        let seen = self.radius.max(pixel / 2.0);
+        // Of what is so hard that chords are as short as they may be, nothing sees many.
+        let is_hard = seen <= self.extent() * FINEST;
+        let crowding = match self.hull() {
+            Some((corner, _)) if !is_hard => crowding(self.curved.iter().flatten(), seen, corner),
+            _ => 1.0,
+        };
+        self.outline(density::flatness(levels, self.radius, pixel) / crowding)
+    }
+
+    /// The outline with curves cut into lines within `flatness` (scene units) of them.
     pub(crate) fn outline(&self, flatness: f64) -> Cow<'_, Outline> {
         if self.curved.is_empty() {
             return Cow::Borrowed(&self.fixed);
         }
-        // Of what is so hard that chords are as short as they may be, no disc sees many.
-        let is_hard = self.radius <= self.extent() * FINEST;
-        let crowding = match self.hull() {
-            Some((corner, _)) if !is_hard => {
-                crowding(self.curved.iter().flatten(), self.radius, corner)
-            }
-            _ => 1.0,
-        };
         let mut outline = self.fixed.clone();
         for group in &self.curved {
             let extent = group
@@ -34,7 +43,7 @@ impl Shadow {
                 .map(|(min, max)| (max - min).max_element())
                 .fold(0.0, f64::max);
             // For a nearly hard shadow the rule would ask for chords without end.
-            let flatness = (flatness / crowding).max(extent * FINEST);
+            let flatness = flatness.max(extent * FINEST);
             let outlines: Vec<Outline> = group
                 .iter()
                 .map(|shape| Outline::of_flattened(shape, flatness))
@@ -49,10 +58,8 @@ impl Shadow {
         if self.curved.is_empty() {
             return &self.fixed;
         }
-        self.exact.get_or_init(|| {
-            self.outline(density::flatness(density::EXACT_SHARE, self.radius, 0.0))
-                .into_owned()
-        })
+        self.exact
+            .get_or_init(|| self.outline_within(density::EXACT_SHARE, 0.0).into_owned())
     }
 
     /// Whether its curves need no fill rule.
@@ -103,10 +110,9 @@ impl Shadow {
         if self.curved.is_empty() || pixel == 0.0 {
             return Cow::Borrowed(self.exact_outline());
         }
-        let needed = density::flatness(levels, self.radius, pixel);
-        let make = || self.outline(needed).into_owned();
-        let (kept, outline) = self.drawn.get_or_init(|| (needed, make()));
-        if *kept == needed {
+        let make = || self.outline_within(levels, pixel).into_owned();
+        let (kept, outline) = self.drawn.get_or_init(|| ([levels, pixel], make()));
+        if *kept == [levels, pixel] {
             Cow::Borrowed(outline)
         } else {
             Cow::Owned(make())
@@ -234,7 +240,7 @@ mod tests {
         let both = light.cast_all(&[heart(), letter()], 6.0, 0.0).unwrap();
         let edges = drawn(&both, 0.1);
         // As fine as its pixels need.
-        let outline = both.outline(density::flatness(0.1, both.radius(), 1.0));
+        let outline = both.outline_within(0.1, 1.0);
         assert_eq!(edges.len(), outline.edges().count());
         assert!(edges.len() < both.exact_outline().edges().count());
         // A hard edge's outline is as fine as pixels need.

@@ -112,6 +112,7 @@ impl Strips {
         self.active
             .retain(|&index| lines[index as usize].bottom > strip);
         let mut cells = Cells {
+            start: self.left,
             deltas: &mut self.deltas,
             crossed: &mut self.crossed,
             marks,
@@ -121,8 +122,7 @@ impl Strips {
             let line = &self.lines[index as usize];
             let (top, bottom) = (line.top.max(strip), line.bottom.min(strip + 1.0));
             let (least, most) = (line.from.min(line.to), line.from.max(line.to));
-            let at =
-                |y: f64| (line.from + (y - line.top) * line.slope).clamp(least, most) - self.left;
+            let at = |y: f64| (line.from + (y - line.top) * line.slope).clamp(least, most);
             cells.add(at(top), at(bottom), (bottom - top) * self.full * line.side);
         }
         let mut cover = cells.cover;
@@ -165,6 +165,8 @@ impl Strips {
 
 /// The cells of one strip.
 struct Cells<'a> {
+    /// The column of the first. All x count from column 0, as what is rounded may not depend on the columns that are seen.
+    start: f64,
     deltas: &'a mut [i32],
     crossed: &'a mut [bool],
     marks: &'a mut [u64],
@@ -177,40 +179,46 @@ impl Cells<'_> {
     #[inline(always)]
     fn add(&mut self, from: f64, to: f64, steps: f64) {
         let (left, right) = (from.min(to), from.max(to));
-        let end = (self.deltas.len() - 1) as f64;
-        if right <= 0.0 {
+        let count = self.deltas.len() - 1;
+        let end = self.start + count as f64;
+        if right <= self.start {
             self.cover += steps as i32;
             return;
         }
         if left >= end {
             return;
         }
-        let (first, last) = (left.max(0.0) as usize, right.min(end - 1.0) as usize);
-        for quad in first / QUAD..=(last + 1).min(self.deltas.len() - 2) / QUAD {
+        let cell_at = |x: f64| (x - self.start) as usize;
+        let (first, last) = (cell_at(left.max(self.start)), cell_at(right.min(end - 1.0)));
+        for quad in first / QUAD..=(last + 1).min(count - 1) / QUAD {
             self.marks[quad / 64] |= 1 << (quad % 64);
         }
-        for crossed in
-            &mut self.crossed[first / BLOCK..=(last + 1).min(self.deltas.len() - 2) / BLOCK]
-        {
+        for crossed in &mut self.crossed[first / BLOCK..=(last + 1).min(count - 1) / BLOCK] {
             *crossed = true;
         }
-        if first == last && left >= 0.0 && right < end {
-            self.put(first, steps as i32, (left + right) / 2.0 - first as f64);
+        if first == last && left >= self.start && right < end {
+            let column = self.start + first as f64;
+            self.put(first, steps as i32, (left + right) / 2.0 - column);
             return;
         }
         let per_cell = steps / (right - left);
         let passed = |x: f64| ((x - left) * per_cell).round() as i32;
-        let mut before = if left < 0.0 { passed(0.0) } else { 0 };
+        let mut before = if left < self.start {
+            passed(self.start)
+        } else {
+            0
+        };
         self.cover += before;
-        let mut x = left.max(0.0);
+        let mut x = left.max(self.start);
         for cell in first..=last {
-            let next = right.min((cell + 1) as f64);
+            let column = self.start + cell as f64;
+            let next = right.min(column + 1.0);
             let after = if next == right {
                 steps as i32
             } else {
                 passed(next)
             };
-            self.put(cell, after - before, (x + next) / 2.0 - cell as f64);
+            self.put(cell, after - before, (x + next) / 2.0 - column);
             (before, x) = (after, next);
         }
     }
