@@ -87,6 +87,41 @@ impl Hidden {
         self.seal();
     }
 
+    /// Hides all pixels but those of some columns and rows, as a rectangle to be redrawn tells; of several clips, what is in all of
+    /// them is seen. What lies beyond the grid is not seen anyway.
+    ///
+    /// ```
+    /// use penumbral::{Grid, Hidden, Light, PixelOptions, Scratch, Shape};
+    ///
+    /// let shadow = Light::flutter().cast(&Shape::rect(8.0, 8.0, 40.0, 40.0)?, 6.0, 0.0)?;
+    /// let grid = Grid::new([0.0, 0.0], [64, 64], 1.0)?;
+    /// let mut hidden = Hidden::new(&grid);
+    /// hidden.clip(0..20, 30..64);
+    /// let options = PixelOptions { hidden: Some(&hidden), ..PixelOptions::default() };
+    /// let mut mask = vec![0; 64 * 64];
+    /// shadow.fill_a8(&grid, &mut mask, &options, &mut Scratch::new())?;
+    /// assert!(mask[40 * 64 + 10] > 0 && mask[40 * 64 + 30] == 0 && mask[20 * 64 + 10] == 0);
+    /// # Ok::<(), penumbral::Error>(())
+    /// ```
+    pub fn clip(&mut self, columns: Range<u32>, rows: Range<u32>) {
+        let width = self.grid.width();
+        for row in 0..self.grid.height() {
+            let seen = if rows.contains(&row) && !columns.is_empty() {
+                columns.start.min(width)..columns.end.min(width)
+            } else {
+                width..width
+            };
+            let beside = [0..seen.start, seen.end..width];
+            let spans = beside.into_iter().filter(|beside| !beside.is_empty());
+            self.spans.extend(spans.map(|beside| Span {
+                row,
+                start: beside.start,
+                end: beside.end,
+            }));
+        }
+        self.seal();
+    }
+
     /// Hides the pixels for which `hides` (column, row) says so.
     #[cfg(feature = "raster")]
     pub(crate) fn add_where(&mut self, mut hides: impl FnMut(u32, u32) -> bool) {

@@ -6,6 +6,8 @@
 #[expect(dead_code, reason = "other tests take more of it")]
 mod common;
 
+use std::ops::Range;
+
 use common::{Case, Random, Summary, bits, by, case, densities, seeds, shapes, snapped, worst_of};
 use penumbral::plan::{self, Method, Target};
 use penumbral::{
@@ -683,6 +685,50 @@ fn hidden_pixels_are_left_alone_and_others_keep_their_bits() {
                     case.label(index)
                 );
             }
+        }
+    }
+}
+
+#[test]
+fn pixels_in_all_clips_keep_their_bits_and_others_are_left_alone() {
+    let (mut scratch, mut random) = (Scratch::new(), Random::new(79));
+    for index in 0..200 {
+        let case = case(10_800 + index);
+        let size = [case.grid.width(), case.grid.height()];
+        let mut hidden = Hidden::new(&case.grid);
+        let clips: Vec<_> = (0..1 + random.below(2))
+            .map(|_| {
+                size.map(|size| {
+                    let [a, b] = [(); 2].map(|()| random.below(size as usize + 20) as u32);
+                    a..b
+                })
+            })
+            .collect();
+        for [columns, rows] in &clips {
+            hidden.clip(columns.clone(), rows.clone());
+        }
+        let options = by([None, Some(FORCED[index % 3])][index % 2]);
+        let all = densities(&case.shadow, &case.grid, &options, &mut scratch);
+        let seen = PixelOptions {
+            hidden: Some(&hidden),
+            ..options
+        };
+        let parts = densities(&case.shadow, &case.grid, &seen, &mut scratch);
+        for (pixel, (density, part)) in all.iter().zip(&parts).enumerate() {
+            let [x, y] = [pixel as u32 % size[0], pixel as u32 / size[0]];
+            let is_seen =
+                |[columns, rows]: &[Range<u32>; 2]| columns.contains(&x) && rows.contains(&y);
+            let expected = if clips.iter().all(is_seen) {
+                *density
+            } else {
+                0.0
+            };
+            let label = case.label(index);
+            assert_eq!(
+                part.to_bits(),
+                expected.to_bits(),
+                "{clips:?}, {x} {y}: {label}"
+            );
         }
     }
 }

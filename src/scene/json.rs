@@ -192,6 +192,8 @@ impl Scene {
         limits: &Limits,
         images: &mut dyn FnMut(&str) -> core::result::Result<Image, String>,
     ) -> Result<Self> {
+        // Some editors begin a file with a byte order mark.
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let whole = Part { text, part: text };
         at_most("bytes", text.len(), limits.scene_length)
             .map_err(|error| whole.refuse("scene", &error))?;
@@ -430,8 +432,17 @@ impl<'a> Part<'a> {
         let reason = message
             .rsplit_once(" at line ")
             .map_or(message.as_str(), |(reason, _)| reason)
-            .replace("struct SurfaceFields", "an object")
+            .replace("expected f32", "expected a number")
+            .replace("trailing characters", "more follows: remove it")
             .replace("EOF while parsing", "the text ends within");
+        // Types have names that no file shows.
+        let reason = match reason.split_once("struct ") {
+            Some((before, name)) => {
+                let after = name.trim_start_matches(char::is_alphanumeric);
+                format!("{before}an object{after}")
+            }
+            None => reason,
+        };
         self.refuse_at(offset, field, reason)
     }
 }
@@ -484,7 +495,7 @@ mod tests {
             ),
             (
                 r#"{"shape":"rrect","x":1,"y":2,"w":3,"h":0,"elevation":5}"#,
-                "line 4, column 1, surfaces[0]: height is 0: give a number above 0",
+                "line 4, column 1, surfaces[0]: h is 0: give a number above 0",
             ),
             (
                 r#"{"shape":"rrect","x":1,"y":2,"w":3,"h":4,"elevation":600}"#,
@@ -539,6 +550,11 @@ mod tests {
         );
         let text = scene("{").unwrap_err().to_string();
         assert!(text.starts_with("line 4"), "{text}");
-        assert!(Scene::from_json("{} {}").is_err());
+        let text = Scene::from_json("{} {}").unwrap_err().to_string();
+        assert!(text.ends_with("missing field `canvas`"), "{text}");
+        let whole = r#"{"canvas":[9,9],"light":{"offset":[0,1],"spread":0.5},"surfaces":[]}"#;
+        let text = Scene::from_json(&format!("{whole} x")).unwrap_err();
+        assert!(text.to_string().ends_with("scene: more follows: remove it"));
+        assert!(Scene::from_json(&format!("\u{feff}{whole}")).is_ok());
     }
 }

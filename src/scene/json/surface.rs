@@ -238,13 +238,39 @@ impl SurfaceFields {
                 let data = self.d.as_deref().ok_or("a path needs the field `d`")?;
                 let path = Path::from_svg(data).map_err(text)?;
                 match &self.stroke {
+                    Some(_) if self.fill_rule.is_some() => {
+                        return Err("a stroke has no inside: leave out `fill_rule`".to_owned());
+                    }
                     Some(stroke) => Shape::stroke(&path, &stroke.build()?),
                     None => Shape::path(&path, rule),
                 }
             }
             _ => return Err(self.unknown_shape()),
         };
-        shape.map_err(text)
+        shape.map_err(|error| self.named(text(error)))
+    }
+
+    /// What is wrong with a shape's field, by the name that it has in scenes.
+    fn named(&self, reason: String) -> String {
+        let names: &[[&str; 2]] = match self.shape.as_str() {
+            "rrect" => &[["width ", "w "], ["height ", "h "]],
+            "circle" => &[
+                ["center.x ", "cx "],
+                ["center.y ", "cy "],
+                ["radius ", "r "],
+            ],
+            "ellipse" => &[
+                ["center.x ", "cx "],
+                ["center.y ", "cy "],
+                ["radius ", "rx or ry "],
+            ],
+            _ => &[],
+        };
+        let renamed = names.iter().find_map(|[name, here]| {
+            let rest = reason.strip_prefix(name)?;
+            Some(format!("{here}{rest}"))
+        });
+        renamed.unwrap_or(reason)
     }
 
     fn unknown_shape(&self) -> String {
