@@ -55,7 +55,6 @@ use strips::Strips;
 use tangents::{ProjectionCircle, tangent_loops};
 pub use triangles::{MeshQuality, MeshVertex, ShadowMesh};
 
-use crate::density::flatness;
 use crate::error::Result;
 use crate::outline::{Edge, Outline};
 use crate::scratch::Scratch;
@@ -243,15 +242,15 @@ impl Shadow {
             let rings = pieces.knots.iter().map(loops).collect();
             // What errors are measured against may itself be a little off, as long as that is stated.
             let share = FIELD_SHARE * levels;
-            let fine = flatness(share, radius, 0.0);
-            let edges = self.outline_within(share, 0.0).moved(-center);
-            let curved = !self.is_fixed() || edges.edges().any(|e| matches!(e, Edge::Arc(_)));
+            let curved = !self.is_fixed() || outline.edges().any(|e| matches!(e, Edge::Arc(_)));
             let unsure = if curved { CURVED * share / 255.0 } else { 0.0 } + cells::NOISE;
-            let loops: Vec<_> = edges
-                .polygons(fine)
-                .iter()
-                .map(|points| lighten(points, radius, share / 255.0))
-                .collect();
+            let mut loops = self.polygons_within(share, 0.0);
+            for points in &mut loops {
+                for point in &mut *points {
+                    *point -= center;
+                }
+                *points = lighten(points, radius, share / self.crowding(0.0, true) / 255.0);
+            }
             let field = Field::Level(Cells::new(&loops, radius));
             return Refinement::new(field, options, rings).run(center, step, unsure);
         }

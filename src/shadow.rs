@@ -41,7 +41,7 @@ pub struct Shadow {
     hull: Option<(DVec2, DVec2)>,
     /// The outline as exact as `density_at` promises, made when it is first needed.
     exact: OnceLock<Outline>,
-    /// The outline for pixels as it was first asked for: with lines that move no density by so many levels, for pixels of that side.
+    /// The outline for pixels as it was first asked for: how near to curves its lines are, and for discs or pixels of which radius.
     drawn: OnceLock<([f64; 2], Outline)>,
     /// The outline as a rounded rectangle, if it is one.
     rounded: Option<Rounded>,

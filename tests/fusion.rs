@@ -7,7 +7,7 @@ mod common;
 
 use common::{Random, setting};
 use penumbral::{
-    Color, DensityMap, Light, PixelOptions, Pose, Scene, Scratch, Shape, Surface, Tone,
+    Color, DensityMap, FillRule, Light, PixelOptions, Pose, Scene, Scratch, Shape, Surface, Tone,
 };
 
 /// A rounded rectangle over the ground.
@@ -141,6 +141,49 @@ fn stacks_hide_the_union_of_what_each_hides() {
         &worst[2..]
     );
     assert!(partial > 4 * stacks, "{partial}");
+}
+
+/// What chords cut off of many arcs in one disc adds up: dots under a card are as dark as polygons of many sides and the same area.
+#[test]
+fn crowds_of_dots_under_a_card_are_as_dark_as_polygons() {
+    const SIDES: u16 = 64;
+    let (mut map, mut scratch) = (DensityMap::default(), Scratch::new());
+    let mut drawn = |dot: &dyn Fn([f32; 2]) -> Shape| {
+        let light = Light::new([80.0, 40.0, 300.0], 1200.0).unwrap();
+        let mut scene = Scene::new([CANVAS; 2], light).unwrap();
+        for i in 0..400_u16 {
+            let center = [
+                35.0 + 3.0 * f32::from(i % 30),
+                35.0 + 3.0 * f32::from(i / 30),
+            ];
+            scene.push(Surface::new(dot(center), 10.0)).unwrap();
+        }
+        let card = Shape::rect(60.0, 50.0, 70.0, 60.0).unwrap();
+        scene.push(Surface::new(card, 12.0)).unwrap();
+        let shadows = scene.ground_shadows().unwrap();
+        shadows
+            .draw(&mut map, &PixelOptions::default(), &mut scratch)
+            .unwrap();
+        map.densities().to_vec()
+    };
+    let dots = drawn(&|center| Shape::circle(center, 1.0).unwrap());
+    let turn = core::f32::consts::TAU / f32::from(SIDES);
+    let radius = (turn / turn.sin()).sqrt();
+    let polygons = drawn(&|center| {
+        let corner = |i: u16| {
+            let (sin, cos) = (f32::from(i) * turn).sin_cos();
+            [center[0] + radius * cos, center[1] + radius * sin]
+        };
+        Shape::polygon(
+            &[(0..SIDES).map(corner).collect::<Vec<_>>()],
+            FillRule::NonZero,
+        )
+        .unwrap()
+    });
+    let errors = dots.iter().zip(&polygons).map(|(a, b)| (a - b).abs());
+    let worst = errors.fold(0.0, f32::max) * 255.0;
+    println!("400 dots under a card: worst {worst:.3} levels");
+    assert!(worst < 1.0, "{worst} levels");
 }
 
 #[test]

@@ -22,9 +22,9 @@ const GOLDEN: [(&str, u64); 11] = [
     ("points", 0x60af_0aa3_2f9e_6c9c),
     ("dithered paint", 0x19a6_f180_d79b_6f45),
     ("masks", 0x9fa6_92f9_d4c9_4c87),
-    ("meshes", 0x721b_ce63_8fa3_57d5),
+    ("meshes", 0x7915_6a94_1190_61fc),
     ("pictures", 0x71b5_3d43_220c_f1ca),
-    ("svg", 0x7d94_6a46_4d58_3c20),
+    ("svg", 0x1e77_4281_9e14_09c9),
 ];
 
 /// FNV-1a of 64 bits (Fowler, Noll & Vo 1991).

@@ -10,7 +10,7 @@ use glam::DVec2;
 
 use super::caster::{AnyShadow, Cast};
 use super::{Receiver, Stage};
-use crate::density::{averaged_side, flatness};
+use crate::density::averaged_side;
 use crate::error::{Error, Result};
 use crate::scene::{Form, Scene, Surface};
 use crate::shadow::Shadow;
@@ -93,10 +93,10 @@ struct Writer<'a> {
 impl Writer<'_> {
     fn draw_surface(&mut self, surface: &Surface, receiver: &Receiver, rank: usize) -> Result<()> {
         // A tenth of a level of coverage.
-        let flat = flatness(0.1, 0.0, 1.0 / f64::from(self.scene.scale()));
+        let pixel = 1.0 / f64::from(self.scene.scale());
         let data = self
             .svg
-            .path_data(&surface.cover().outline(flat).polygons(flat));
+            .path_data(&surface.cover().polygons_within(0.1, pixel));
         let Color { r, g, b, .. } = surface.fill();
         let fill = Color::rgb(r, g, b);
         let weight = number(f64::from(surface.weight()), 4);

@@ -18,7 +18,7 @@ use libm::{atan, atan2, sqrt};
 
 use super::view::View;
 use super::{Claim, Family, Parameter, Technique};
-use crate::density::{flatness, square_average};
+use crate::density::square_average;
 use crate::error::{self, Result};
 use crate::grid::Grid;
 use crate::scratch::Scratch;
@@ -59,8 +59,7 @@ impl Irradiance {
     /// weights are even, and by more the more uneven they are.
     #[must_use]
     pub fn density_at(&self, shadow: &Shadow, point: [f64; 2]) -> f64 {
-        let flat = flatness(0.02, shadow.radius(), 0.0);
-        let polygons = shadow.outline(flat).polygons(flat);
+        let polygons = shadow.polygons_within(0.02, 0.0);
         let lines = polygons
             .iter()
             .flat_map(|points| super::view::sides(points));

@@ -10,7 +10,6 @@ use libm::sqrt;
 use super::rays::{number, on_disc};
 use super::view::{View, holds, sides};
 use super::{Claim, Family, Parameter, Technique};
-use crate::density::flatness;
 use crate::error::{self, Result};
 use crate::grid::Grid;
 use crate::scratch::Scratch;
@@ -80,10 +79,8 @@ impl MonteCarlo {
         point: [f64; 2],
         weight: impl Fn([f64; 2]) -> f64,
     ) -> Estimate {
-        let flat = flatness(CURVES, shadow.radius(), 0.0);
-        let outline = shadow.outline(flat);
+        let polygons = shadow.polygons_within(CURVES, 0.0);
         let point = DVec2::from_array(point);
-        let polygons = outline.polygons(flat);
         let lines: Vec<(DVec2, DVec2)> = polygons.iter().flat_map(|p| sides(p)).collect();
         let near = near(&lines, point, shadow.radius() * (1.0 + 1e-9));
         self.trace(0, point, shadow.radius(), 0.0, &near, weight)

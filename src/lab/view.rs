@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use crate::density::{averaged_side, flatness};
+use crate::density::averaged_side;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::outline::{Edge, Line, clip_to_box};
@@ -21,9 +21,8 @@ impl View {
     /// The shadow's outline with curves cut so finely that no density moves by more than `levels`.
     pub(super) fn new(shadow: &Shadow, grid: &Grid, levels: f64) -> Self {
         let scale = grid.pixels_per_unit();
-        let flat = flatness(levels, shadow.radius(), 1.0 / scale);
         let place = |p: DVec2| p * scale - grid.corner();
-        let polygons = shadow.outline(flat).polygons(flat);
+        let polygons = shadow.polygons_within(levels, 1.0 / scale);
         Self {
             polygons: polygons
                 .into_iter()

@@ -4,39 +4,70 @@ use std::collections::HashMap;
 
 use glam::DVec2;
 
-use crate::path::Segment;
+use crate::outline::Edge;
+use crate::path::{Segment, arc_steps};
 use crate::shape::Shape;
 
-/// A chord that is longer than so many radii is counted as one of that length, about its middle: such curves are nearly straight for a disc.
+/// A chord that is longer than so many radii is counted as one of that length, about its middle: such curves are nearly straight for what
+/// sees them.
 const LONGEST: f64 = 4.0;
 
-/// How many times its own circumference a disc may see of the curves of some shapes, at least 1. Curves are cut into chords as if there
-/// were one that long: of more, areas between chords and curves add up.
-///
-/// Lengths are counted by squares of the radius's size, of which a disc meets nine at most. They begin at `corner`, one of the shapes': where
-/// these are changes nothing.
-pub(super) fn crowding<'a>(
+/// How far the chords that are counted may be from their curves, in the radius of what sees them.
+const COARSE: f64 = 1.0 / 8.0;
+
+/// Chords of curves, from point to point.
+pub(super) type Chords = Vec<[DVec2; 2]>;
+
+/// Adds chords of the shapes' curves for what is of a radius.
+pub(super) fn push_curves<'a>(
     shapes: impl Iterator<Item = &'a Shape>,
     radius: f64,
-    corner: DVec2,
-) -> f64 {
-    let mut lengths: HashMap<[i64; 2], f64> = HashMap::new();
-    let mut chords = Vec::new();
+    chords: &mut Chords,
+) {
+    let mut ends = Vec::new();
     for contour in shapes.flat_map(|shape| &shape.contours) {
         let mut from = contour.start;
-        let place = |point: DVec2| (point - corner) / radius;
         for segment in &contour.segments {
             if !matches!(segment, Segment::Line(_)) {
-                chords.clear();
-                segment.flatten(from, radius / 8.0, &mut chords);
-                let mut start = place(from);
-                for &end in &chords {
-                    add(start, place(end), &mut lengths);
-                    start = place(end);
+                ends.clear();
+                segment.flatten(from, COARSE * radius, &mut ends);
+                let mut start = from;
+                for &end in &ends {
+                    chords.push([start, end]);
+                    start = end;
                 }
             }
             from = segment.end();
         }
+    }
+}
+
+/// The same of arcs among edges.
+pub(super) fn push_arcs<'a>(
+    edges: impl Iterator<Item = &'a Edge>,
+    radius: f64,
+    chords: &mut Chords,
+) {
+    for edge in edges {
+        if let Edge::Arc(arc) = edge {
+            let count = arc_steps(arc.radius, arc.sweep, COARSE * radius);
+            let at = |i: u32| arc.at(arc.start + arc.sweep * f64::from(i) / f64::from(count));
+            chords.extend((0..count).map(|i| [at(i), at(i + 1)]));
+        }
+    }
+}
+
+/// How many times its own circumference a disc of a radius may see of curves, at least 1. Curves are cut into lines as if there were one
+/// that long: of more, areas between these and curves add up.
+///
+/// Lengths are counted by squares of the radius's size, of which a disc meets nine at most. They begin at `corner`, that of what has the
+/// curves: where it is changes nothing.
+pub(super) fn crowding(chords: &Chords, radius: f64, corner: DVec2) -> f64 {
+    let mut lengths: HashMap<[i64; 2], f64> = HashMap::new();
+    let place = |point: DVec2| (point - corner) / radius;
+    for chord in chords {
+        let [start, end] = chord.map(place);
+        add(start, end, &mut lengths);
     }
     let about = |&[x, y]: &[i64; 2]| {
         let near = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| [x + dx, y + dy]));

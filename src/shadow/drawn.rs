@@ -2,7 +2,9 @@
 
 use std::borrow::Cow;
 
-use super::crowding::crowding;
+use glam::DVec2;
+
+use super::crowding::{crowding, push_arcs, push_curves};
 use super::{Shadow, unite};
 use crate::density;
 use crate::outline::{self, Edge, Fineness, Outline};
@@ -19,15 +21,35 @@ impl Shadow {
         if self.curved.is_empty() {
             return Cow::Borrowed(&self.fixed);
         }
+        let crowding = self.crowding(pixel, false);
+        self.outline(density::flatness(levels, self.radius, pixel) / crowding)
+    }
+
+    /// The same as polygons: arcs are cut as well.
+    pub(crate) fn polygons_within(&self, levels: f64, pixel: f64) -> Vec<Vec<DVec2>> {
+        let flatness = density::flatness(levels, self.radius, pixel) / self.crowding(pixel, true);
+        let outline = match pixel {
+            0.0 => self.outline_within(levels, pixel),
+            _ => self.drawn_outline(levels, pixel),
+        };
+        outline.polygons(flatness)
+    }
+
+    /// How much nearer to curves lines have to be because many of these are seen at once; with `arcs`, all that are cut into lines.
+    pub(crate) fn crowding(&self, pixel: f64, arcs: bool) -> f64 {
         // What a density is about, a disc or a pixel.
         let seen = self.radius.max(pixel / 2.0);
         // Of what is so hard that chords are as short as they may be, nothing sees many.
         let is_hard = seen <= self.extent() * FINEST;
-        let crowding = match self.hull() {
-            Some((corner, _)) if !is_hard => crowding(self.curved.iter().flatten(), seen, corner),
-            _ => 1.0,
+        let Some((corner, _)) = self.hull().filter(|_| !is_hard) else {
+            return 1.0;
         };
-        self.outline(density::flatness(levels, self.radius, pixel) / crowding)
+        let mut chords = Vec::new();
+        push_curves(self.curved.iter().flatten(), seen, &mut chords);
+        if arcs {
+            push_arcs(self.fixed.edges(), seen, &mut chords);
+        }
+        crowding(&chords, seen, corner)
     }
 
     /// The outline with curves cut into lines within `flatness` (scene units) of them.
@@ -110,9 +132,14 @@ impl Shadow {
         if self.curved.is_empty() || pixel == 0.0 {
             return Cow::Borrowed(self.exact_outline());
         }
+        // All that it depends on.
+        let needed = [
+            density::flatness(levels, self.radius, pixel),
+            self.radius.max(pixel / 2.0),
+        ];
         let make = || self.outline_within(levels, pixel).into_owned();
-        let (kept, outline) = self.drawn.get_or_init(|| ([levels, pixel], make()));
-        if *kept == [levels, pixel] {
+        let (kept, outline) = self.drawn.get_or_init(|| (needed, make()));
+        if *kept == needed {
             Cow::Borrowed(outline)
         } else {
             Cow::Owned(make())

@@ -397,3 +397,26 @@ fn a_curve_along_a_line_is_filled_with_nothing() {
     assert!(mesh.is_complete());
     assert!(mass(&mesh).abs() < 1e-4, "{}", mass(&mesh));
 }
+
+/// What chords cut off of many arcs in one disc adds up in what meshes are measured against as well.
+#[test]
+fn crowds_of_dots_keep_their_tolerance() {
+    let dots: Vec<Shape> = (0..100_u16)
+        .map(|i| [3.0 * f32::from(i % 10), 3.0 * f32::from(i / 10)])
+        .map(|center| Shape::circle(center, 1.0).unwrap())
+        .collect();
+    let light = Light::directional([0.0, 0.0], 12.0).unwrap();
+    let shadow = light.cast_all(&dots, 1.0, 0.0).unwrap();
+    let within = |tolerance: f32| MeshOptions::new(levels(tolerance));
+    for (tolerance, options) in [
+        (1.0, within(1.0)),
+        (4.0, within(4.0)),
+        (4.0, within(4.0).few()),
+    ] {
+        let mesh = shadow.mesh(options);
+        assert!(mesh.is_complete());
+        let error = dense_error(&shadow, &mesh, 8);
+        println!("100 dots, {options:?}: {error:.3} levels");
+        assert!(error <= tolerance, "{error} of {tolerance}");
+    }
+}

@@ -15,6 +15,8 @@ const RADIUS: f32 = 10.0;
 #[test]
 fn random_outlines_keep_their_tolerance() {
     random_outlines(0..16);
+    // A needle along which density has tops near to each other.
+    random_outlines(5_196..5_197);
 }
 
 /// By `cargo test --release --all-features --test mesh thousand -- --ignored --nocapture`; `PENUMBRAL_OUTLINES=460..470` takes

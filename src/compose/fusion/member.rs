@@ -5,7 +5,7 @@ use glam::DVec2;
 use super::occluder::Occluder;
 use crate::compose::caster::{AnyShadow, Cast};
 use crate::density::lanes::LANES;
-use crate::density::{CURVES, averaged_side, flatness};
+use crate::density::{CURVES, averaged_side};
 use crate::grid::Grid;
 use crate::shadow::Shadow;
 use crate::tilted::Circle;
@@ -31,9 +31,7 @@ impl Member {
         let kind = match &cast.shadow {
             AnyShadow::Level(shadow) => {
                 let radius = shadow.radius();
-                let flat = flatness(CURVES, radius, 1.0 / scale);
-                let of_part =
-                    |part: &Shadow| part.drawn_outline(CURVES, 1.0 / scale).polygons(flat);
+                let of_part = |part: &Shadow| part.polygons_within(CURVES, 1.0 / scale);
                 // Pixels are worked on together with others that may be beyond the grid.
                 let parts = shadow.parts_on(grid, LANES as f64);
                 let polygons: Vec<_> = parts.flat_map(of_part).collect();
