@@ -223,7 +223,7 @@ pub(crate) fn square_average(radius: f64, density: impl Fn(DVec2) -> f64) -> f64
     if side == 0.0 {
         return density(DVec2::ZERO);
     }
-    quadrature::square(radius)
+    quadrature::exact_square(radius, 1)
         .map(|(offset, weight)| weight * density(offset * side))
         .sum()
 }

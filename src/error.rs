@@ -218,6 +218,21 @@ pub enum Error {
     },
 }
 
+#[cfg(feature = "scene")]
+impl Error {
+    /// The same with the field by the name that another place has for it, if it is among these.
+    pub(crate) fn renamed(mut self, names: &[[&'static str; 2]]) -> Self {
+        if let Self::NotFinite { field, .. }
+        | Self::OutOfRange { field, .. }
+        | Self::NotPositive { field, .. } = &mut self
+            && let Some([_, here]) = names.iter().find(|[name, _]| *name == *field)
+        {
+            *field = here;
+        }
+        self
+    }
+}
+
 /// A number as its user wrote it: most were given as `f32`, and their doubles end in digits that nobody wrote.
 struct Shown(f64);
 

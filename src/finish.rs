@@ -15,7 +15,7 @@
 //! Curvature-driven shading follows US 2016/0049001; the other models do not use it.
 
 mod analytic;
-mod detail;
+pub(crate) mod detail;
 #[cfg(feature = "raster")]
 mod draw;
 mod illumination;

@@ -16,8 +16,9 @@ use crate::shape::{Cover, Shape};
 
 /// Pixels of one grid that need no shadow: those wholly covered by opaque surfaces above the receiver, or clipped away.
 ///
-/// It is a matter of speed alone: whatever is painted over a shadow hides it anyway, and a pixel that is only partly
-/// covered is never hidden.
+/// What surfaces hide is a matter of speed alone: whatever is painted over a shadow hides it anyway, and a pixel that is only partly
+/// covered is never hidden. [Clips](Self::clip) leave out what would be seen. Of hidden pixels masks are 0, and nothing is blended onto
+/// a canvas.
 ///
 /// ```
 /// use penumbral::{Color, Grid, Hidden, Light, Paint, PixelOptions, Scratch, Shape};
@@ -87,8 +88,9 @@ impl Hidden {
         self.seal();
     }
 
-    /// Hides all pixels but those of some columns and rows, as a rectangle to be redrawn tells; of several clips, what is in all of
-    /// them is seen. What lies beyond the grid is not seen anyway.
+    /// Hides all pixels but those of some columns and rows, such as a rectangle of a canvas that is to be blended again; of several
+    /// clips, what is in all of them is seen. What lies beyond the grid is not seen anyway. To fill a rectangle of a mask that is
+    /// kept, draw on a grid of that rectangle, with the mask's stride.
     ///
     /// ```
     /// use penumbral::{Grid, Hidden, Light, PixelOptions, Scratch, Shape};

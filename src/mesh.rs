@@ -33,7 +33,7 @@ mod tilted;
 mod triangles;
 mod umbra;
 
-use core::f64::consts::FRAC_2_PI;
+use core::f64::consts::{FRAC_2_PI, PI};
 
 use glam::DVec2;
 
@@ -258,13 +258,19 @@ impl Shadow {
 }
 
 impl Shadow {
-    /// The smallest box that holds the umbra, or none where the light is nowhere wholly hidden.
+    /// The smallest box that holds the umbra, or none where the light is nowhere wholly hidden. Of paths it takes milliseconds, and for
+    /// detailed ones under a wide penumbra more.
     #[must_use]
     pub fn umbra_bounds(&self) -> Option<Bounds> {
         let outline = self.exact_outline();
         let (min, max) = outline.bounds()?;
         if self.radius() == 0.0 {
             return Some(Bounds::outwards(min, max));
+        }
+        // The light is hidden where a disc is within the outline: there is none in a smaller one.
+        let disc = PI * self.radius() * self.radius();
+        if outline.area() < disc || (max - min).min_element() < 2.0 * self.radius() {
+            return None;
         }
         let center = min.midpoint(max);
         let flat = (self.radius() * UMBRA_FLATNESS).max(self.extent() * UMBRA_FACET);

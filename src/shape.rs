@@ -115,7 +115,7 @@ impl Shape {
     /// # Errors
     /// A number that is not finite or passes [`MAX_COORDINATE`](crate::MAX_COORDINATE), a radius not above 0.
     pub fn circle(center: [f32; 2], radius: f32) -> Result<Self> {
-        Self::ellipse(center, [radius; 2])
+        Self::ellipse_of(center, [("radius", radius); 2])
     }
 
     /// An ellipse with half axes `radii` along x and y.
@@ -123,12 +123,18 @@ impl Shape {
     /// # Errors
     /// As [`Shape::circle`].
     pub fn ellipse(center: [f32; 2], radii: [f32; 2]) -> Result<Self> {
+        Self::ellipse_of(center, [("radii.x", radii[0]), ("radii.y", radii[1])])
+    }
+
+    /// An ellipse of radii with their names.
+    fn ellipse_of(center: [f32; 2], radii: [(&'static str, f32); 2]) -> Result<Self> {
         let center = DVec2::new(
             error::coordinate("center.x", f64::from(center[0]))?,
             error::coordinate("center.y", f64::from(center[1]))?,
         );
-        let u = DVec2::new(error::positive("radius", f64::from(radii[0]))?, 0.0);
-        let v = DVec2::new(0.0, error::positive("radius", f64::from(radii[1]))?);
+        let [x, y] = radii;
+        let u = DVec2::new(error::positive(x.0, f64::from(x.1))?, 0.0);
+        let v = DVec2::new(0.0, error::positive(y.0, f64::from(y.1))?);
         let half = |start, to| {
             Segment::Arc(EllipseArc {
                 center,

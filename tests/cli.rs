@@ -490,17 +490,16 @@ mod mesh {
                 .cast_posed(&card, &pose, 0.0)
                 .unwrap()
                 .mesh(Tolerance::ONE_LEVEL);
-            assert_eq!(length(&shadow["indices"]), mesh.indices().len());
-            let [near, far] = [0, 1].map(|end: usize| {
-                let xs = mesh.vertices().iter().map(|v| f64::from(v.position[end]));
-                xs.sum::<f64>() / mesh.vertices().len() as f64
-            });
-            let middle = |axis: usize| {
-                let places = shadow["positions"].as_array().unwrap();
-                let sum: f64 = places.iter().map(|place| numbers(place)[axis]).sum();
-                sum / places.len() as f64
-            };
-            assert!((middle(0) - near).abs() < 1e-3 && (middle(1) - far).abs() < 1e-3);
+            let indices: Vec<f64> = mesh.indices().iter().map(|&i| i.into()).collect();
+            assert_eq!(numbers(&shadow["indices"]), indices);
+            let places = shadow["positions"].as_array().unwrap();
+            let densities = numbers(&shadow["densities"]);
+            assert_eq!(places.len(), mesh.vertices().len());
+            for ((place, density), vertex) in places.iter().zip(densities).zip(mesh.vertices()) {
+                let place: Vec<f32> = numbers(place).into_iter().map(|at| at as f32).collect();
+                assert_eq!(place, vertex.position);
+                assert_eq!(density as f32, vertex.density);
+            }
         }
     }
 
@@ -747,10 +746,17 @@ mod failures {
             (r#"{"shape": "circle", "cx": 9, "cy": 9, "r": 0, "elevation": 8}"#, ": r is 0"),
             (r#"{"shape": "circle", "cx": 1e9, "cy": 9, "r": 5, "elevation": 8}"#, ": cx is 1e9"),
             (r#"{"shape": "circle", "cx": 9, "cy": 9, "r": 5, "rx": 5, "elevation": 8}"#, "field `rx` is not one of this shape's"),
-            (r#"{"shape": "ellipse", "cx": 9, "cy": 9, "rx": 5, "ry": -5, "elevation": 8}"#, ": rx or ry is -5"),
+            (r#"{"shape": "ellipse", "cx": 9, "cy": 9, "rx": 5, "ry": -5, "elevation": 8}"#, ": ry is -5"),
             (r#"{"shape": "rrect", "x": 1, "y": 2, "w": -3, "h": 4, "elevation": 8}"#, ": w is -3"),
             (r#"{"shape": "path", "d": "M 0 0 L 9 0 L 0 9", "stroke": {"width": 2}, "fill_rule": "evenodd", "elevation": 8}"#, "leave out `fill_rule`"),
             (r#"{"shape": "path", "d": "M 0 0 L 9 0 L 0 9", "stroke": 2, "elevation": 8}"#, "surfaces[0].stroke: invalid type: integer `2`, expected an object"),
+            (r#"{"shape": "rrect", "x": 1, "y": 2, "w": 3, "h": 4, "radii": [1, -2, 3, 4], "elevation": 8}"#, ": radii is -2"),
+            (r#"{"shape": "rrect", "x": 1, "y": 2, "w": 3, "h": 4, "radii": ["a", 2, 3, 4], "elevation": 8}"#, "expected a number or a pair of them"),
+            (r#"{"shape": "rrect", "x": 1, "y": 2, "w": 0, "h": 4, "corners": [1, 2, 3, 4]}"#, ": w is 0"),
+            (r#"{"shape": "rrect", "x": 1, "y": 2, "w": 3, "h": 4, "elevation": 8, "tilt": {"pivot": [1e9, 2], "axis": [1, 0], "degrees": 9}}"#, ": tilt.pivot is 1e9"),
+            (r#"{"shape": "rrect", "x": 1, "y": 2, "w": 3, "h": 4, "elevation": 8, "struct beam": 1}"#, "unknown field `struct beam`"),
+            (r#"{"shape": "rrect", "x": 1, "y": 2, "w": 3, "h": 4, "elevation": 8, "image": "none.png", "tilt": {"pivot": [1, 2], "axis": [1, 0], "degrees": 9}}"#, "an image is not tilted"),
+            (r#"{"shape": "path", "d": "M 0 0 L 9 0", "stroke": [2], "elevation": 8}"#, "surfaces[0].stroke: invalid type: sequence, expected an object"),
             (r#"{"shape": "circle", "cx": "9", "cy": 9, "r": 5, "elevation": 8}"#, "expected a number"),
             (r#"{"shape": "polygon", "elevation": 8}"#, "a polygon needs `points` or `rings`"),
             (r#"{"shape": "polygon", "points": [], "elevation": 8}"#, "polygon encloses nothing"),

@@ -10,8 +10,8 @@ use std::sync::Arc;
 
 use common::Random;
 use penumbral::{
-    Blending, Color, Error, FillRule, Group, Image, Light, Overlap, Path, Pose, Renderer, Scene,
-    Shape, Surface, Tone,
+    Blending, Bounds, Color, Error, FillRule, Group, Image, Light, Overlap, Path, Pose, Renderer,
+    Scene, Shape, Surface, Tone,
 };
 use tiny_skia::Pixmap;
 
@@ -198,6 +198,35 @@ fn an_image_is_drawn_and_casts_by_its_alpha() {
     assert!(Image::from_rgba8([0, 2], Vec::new()).is_err());
 }
 
+/// Texels are placed from where the picture begins, not from where what is drawn of it does.
+#[test]
+fn windows_of_an_image_show_the_same_bits() {
+    let mut random = Random::new(12);
+    let pixels = (0..64 * 48 * 4).map(|_| random.below(256) as u8).collect();
+    let image = Arc::new(Image::from_rgba8([64, 48], pixels).unwrap());
+    let mut scene = empty();
+    let place = [20.3, 10.7, 121.4, 93.3];
+    scene
+        .push(Surface::image(image, place, 6.0).unwrap())
+        .unwrap();
+    let (fresh, mut renderer) = (drawn(&scene), Renderer::new());
+    for _ in 0..60 {
+        let [x, y] = CANVAS.map(|side| random.between(0.0, side - 2.0));
+        let bounds = Bounds {
+            min: [x, y],
+            max: [
+                random.between(x + 1.0, CANVAS[0]),
+                random.between(y + 1.0, CANVAS[1]),
+            ],
+        };
+        let mut again = fresh.clone();
+        renderer
+            .render_within(&scene, &[bounds], &mut again)
+            .unwrap();
+        assert!(fresh == again, "{bounds:?}");
+    }
+}
+
 /// Mostly the same few elevations, as in an interface: those at one are united.
 fn few_elevations(random: &mut Random) -> f32 {
     [0.0, 1.0, 2.5, 2.5, 6.0, random.between(0.5, 20.0)][random.below(6)]
@@ -233,6 +262,11 @@ fn any_surface(random: &mut Random, elevation: fn(&mut Random) -> f32) -> Surfac
         let axis = [random.between(-1.0, 1.0), 1.0];
         let pose = Pose::turned(elevation + 8.0, [x, y], axis, random.between(0.0, 3.0)).unwrap();
         return Surface::posed(shape, &pose).with_fill(color);
+    }
+    if random.below(9) == 0 {
+        let pixels = (0..5 * 4 * 4).map(|_| random.below(256) as u8).collect();
+        let image = Arc::new(Image::from_rgba8([5, 4], pixels).unwrap());
+        return Surface::image(image, [x, y, w, h], elevation).unwrap();
     }
     let opacity = if random.below(4) == 0 { 0.6 } else { 1.0 };
     Surface::new(shape, elevation)

@@ -690,12 +690,18 @@ fn hidden_pixels_are_left_alone_and_others_keep_their_bits() {
 }
 
 #[test]
-fn pixels_in_all_clips_keep_their_bits_and_others_are_left_alone() {
+fn pixels_in_all_clips_keep_their_bits_and_nothing_is_drawn_elsewhere() {
     let (mut scratch, mut random) = (Scratch::new(), Random::new(79));
+    let paint = Paint::new(Color::rgb(40, 20, 0), 0.8).unwrap();
     for index in 0..200 {
         let case = case(10_800 + index);
-        let size = [case.grid.width(), case.grid.height()];
-        let mut hidden = Hidden::new(&case.grid);
+        let grid = &case.grid;
+        let size = [grid.width(), grid.height()];
+        let mut hidden = Hidden::new(grid);
+        if index % 5 == 0 {
+            hidden.add_all(case.shapes.iter(), &mut scratch);
+        }
+        let is_covered = hidden_pixels(&hidden, &mut scratch);
         let clips: Vec<_> = (0..1 + random.below(2))
             .map(|_| {
                 size.map(|size| {
@@ -708,25 +714,36 @@ fn pixels_in_all_clips_keep_their_bits_and_others_are_left_alone() {
             hidden.clip(columns.clone(), rows.clone());
         }
         let options = by([None, Some(FORCED[index % 3])][index % 2]);
-        let all = densities(&case.shadow, &case.grid, &options, &mut scratch);
         let seen = PixelOptions {
             hidden: Some(&hidden),
             ..options
         };
-        let parts = densities(&case.shadow, &case.grid, &seen, &mut scratch);
-        for (pixel, (density, part)) in all.iter().zip(&parts).enumerate() {
+        let all = densities(&case.shadow, grid, &options, &mut scratch);
+        let parts = densities(&case.shadow, grid, &seen, &mut scratch);
+        let before: Vec<u8> = (0..4 * all.len())
+            .map(|i| [(i / 4 % 251) as u8, 255][usize::from(i % 4 == 3)])
+            .collect();
+        let [whole, clipped] = [&options, &seen].map(|options| {
+            let mut canvas = before.clone();
+            case.shadow
+                .blend_rgba8(grid, &mut canvas, &paint, options, &mut scratch)
+                .unwrap();
+            canvas
+        });
+        for (pixel, density) in all.into_iter().enumerate() {
             let [x, y] = [pixel as u32 % size[0], pixel as u32 / size[0]];
-            let is_seen =
+            let is_in =
                 |[columns, rows]: &[Range<u32>; 2]| columns.contains(&x) && rows.contains(&y);
-            let expected = if clips.iter().all(is_seen) {
-                *density
+            let is_seen = clips.iter().all(is_in) && !is_covered[pixel];
+            let bytes = 4 * pixel..4 * pixel + 4;
+            let (density, expected) = if is_seen {
+                (density, &whole[bytes.clone()])
             } else {
-                0.0
+                (0.0, &before[bytes.clone()])
             };
             let label = case.label(index);
-            assert_eq!(
-                part.to_bits(),
-                expected.to_bits(),
+            assert!(
+                parts[pixel].to_bits() == density.to_bits() && &clipped[bytes] == expected,
                 "{clips:?}, {x} {y}: {label}"
             );
         }

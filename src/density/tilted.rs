@@ -255,7 +255,7 @@ impl Painter {
                 .map(|edge| edge.double_area(middle))
                 .sum::<f64>();
         }
-        (double_area.abs() / 2.0).min(1.0)
+        settled(double_area.abs() / 2.0)
     }
 
     /// The penumbra radius of the caster's point that hides the light's centre, within those of its vertices: what the pixel's

@@ -7,6 +7,9 @@ use super::tile::Tile;
 use super::{Intensity, Lighting};
 use crate::error::{self, Result};
 
+/// The farthest that fibres turn, in radians.
+pub(crate) const MOST_TURN: f64 = 1000.0;
+
 /// Bumps: a table of heights that tilts the normal and leaves the surface flat (Blinn 1978).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bump {
@@ -54,8 +57,8 @@ impl Frame {
         Ok(Self {
             grain,
             depth: error::coordinate("frame.depth", f64::from(depth))?,
-            angle: error::within("frame.angle", f64::from(angle), -1000.0, 1000.0)?,
-            twist: error::within("frame.twist", f64::from(twist), -1000.0, 1000.0)?,
+            angle: error::within("frame.angle", f64::from(angle), -MOST_TURN, MOST_TURN)?,
+            twist: error::within("frame.twist", f64::from(twist), -MOST_TURN, MOST_TURN)?,
         })
     }
 }

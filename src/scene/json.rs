@@ -4,6 +4,10 @@
 mod finish;
 mod surface;
 
+use core::marker::PhantomData;
+
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 use serde_json::value::RawValue;
 
@@ -21,6 +25,27 @@ fn some<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
     reader: D,
 ) -> core::result::Result<Option<T>, D::Error> {
     T::deserialize(reader).map(Some)
+}
+
+/// An object with named fields: a list of values without names would be taken for one.
+fn object<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
+    reader: D,
+) -> core::result::Result<Option<T>, D::Error> {
+    struct Object<T>(PhantomData<T>);
+
+    impl<'de, T: Deserialize<'de>> Visitor<'de> for Object<T> {
+        type Value = T;
+
+        fn expecting(&self, text: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+            text.write_str("an object")
+        }
+
+        fn visit_map<A: MapAccess<'de>>(self, map: A) -> core::result::Result<T, A::Error> {
+            T::deserialize(MapAccessDeserializer::new(map))
+        }
+    }
+
+    reader.deserialize_map(Object(PhantomData)).map(Some)
 }
 
 /// Each field as the piece of text that it is, so that what is wrong with one can be said with its place.
@@ -431,15 +456,21 @@ impl<'a> Part<'a> {
         let message = error.to_string();
         let reason = message
             .rsplit_once(" at line ")
-            .map_or(message.as_str(), |(reason, _)| reason)
-            .replace("expected f32", "expected a number")
-            .replace("trailing characters", "more follows: remove it")
-            .replace("EOF while parsing", "the text ends within");
+            .map_or(message.as_str(), |(reason, _)| reason);
+        let reason = match reason {
+            "trailing characters" => "more follows: remove it".to_owned(),
+            _ => reason.replace("EOF while parsing", "the text ends within"),
+        };
         // Types have names that no file shows.
-        let reason = match reason.split_once("struct ") {
-            Some((before, name)) => {
-                let after = name.trim_start_matches(char::is_alphanumeric);
-                format!("{before}an object{after}")
+        let reason = match reason.rsplit_once(", expected ") {
+            Some((before, expected)) => {
+                let kind = match expected {
+                    "f32" | "f64" => "a number",
+                    "u32" => "a whole number not below 0",
+                    _ if expected.starts_with("struct ") => "an object",
+                    other => other,
+                };
+                format!("{before}, expected {kind}")
             }
             None => reason,
         };

@@ -39,9 +39,11 @@ impl Shadow {
     pub(crate) fn crowding(&self, pixel: f64, arcs: bool) -> f64 {
         // What a density is about, a disc or a pixel.
         let seen = self.radius.max(pixel / 2.0);
-        // Of what is so hard that chords are as short as they may be, nothing sees many.
+        // Of what is so hard that chords are as short as they may be, nothing sees many; and of a convex curve a disc sees no more than its
+        // own circumference.
         let is_hard = seen <= self.extent() * FINEST;
-        let Some((corner, _)) = self.hull().filter(|_| !is_hard) else {
+        let is_convex = self.rounded().is_some();
+        let Some((corner, _)) = self.hull().filter(|_| !is_hard && !is_convex) else {
             return 1.0;
         };
         let mut chords = Vec::new();

@@ -43,7 +43,7 @@ enum Command {
         #[arg(long, default_value = "1", value_parser = tolerance)]
         tolerance: Tolerance,
     },
-    /// Draw the density of all casters on the ground as 16-bit grey, white = 1, and time it.
+    /// Draw the density of all casters on the ground under the first light as 16-bit grey, white = 1, and time it.
     Density {
         /// The scene file, JSON.
         scene: PathBuf,
@@ -63,7 +63,7 @@ enum Command {
         #[arg(long, default_value = "1", value_parser = clap::value_parser!(u32).range(1..=100_000))]
         repeat: u32,
     },
-    /// Write the shadow of each surface on the ground as triangles.
+    /// Write the shadow of each surface on the ground as triangles, under each light; those of images have none.
     Mesh {
         /// The scene file, JSON.
         scene: PathBuf,

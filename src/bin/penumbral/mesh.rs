@@ -68,7 +68,7 @@ pub(crate) fn run(path: &Path, file: &Path, options: MeshOptions) -> Result<(), 
     for Made { surface, mesh, .. } in made.iter().filter(|made| !made.mesh.is_complete()) {
         output::complain(&format!(
             "surfaces[{surface}]: the mesh is not complete: it is up to {:.2} levels wrong",
-            mesh.error_levels()
+            mesh.error_levels().min(255.0)
         ));
     }
     Ok(())

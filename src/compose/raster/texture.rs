@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 use tiny_skia::{
-    ColorU8, FilterQuality, Paint, Pattern, Pixmap, PremultipliedColorU8, Rect, SpreadMode,
-    Transform,
+    BlendMode, ColorU8, FilterQuality, Paint, Pattern, Pixmap, PremultipliedColorU8, Rect,
+    SpreadMode, Transform,
 };
 
 use crate::error::{Error, Result};
@@ -33,36 +33,41 @@ fn empty(width: u32, height: u32) -> Result<Pixmap> {
     })
 }
 
+/// The side of the tiles in which an image is drawn, in pixels. Where they begin is the picture's to say and not the window's: places of
+/// texels are rounded from there, so that a window shows the bits that all of the picture has.
+const TILE: u32 = 256;
+
 impl Texture {
     /// An image spread over a place, on a grid's pixels.
     pub(super) fn new(image: &Pixmap, place: &Place, grid: &Grid) -> Result<Self> {
         let mut pixmap = empty(grid.width(), grid.height())?;
-        let scale = grid.pixels_per_unit();
-        let texel =
-            place.size * scale / DVec2::new(f64::from(image.width()), f64::from(image.height()));
-        let corner = place.min * scale - grid.corner();
-        let transform = Transform::from_row(
-            texel.x as f32,
-            0.0,
-            0.0,
-            texel.y as f32,
-            corner.x as f32,
-            corner.y as f32,
-        );
-        let paint = Paint {
-            shader: Pattern::new(
-                image.as_ref(),
-                SpreadMode::Pad,
-                FilterQuality::Bilinear,
-                1.0,
-                transform,
-            ),
-            ..Paint::default()
-        };
-        // All of the layer: where the image ends is the surface's own coverage to say.
-        let whole = Rect::from_xywh(0.0, 0.0, grid.width() as f32, grid.height() as f32);
-        if let Some(whole) = whole {
-            pixmap.fill_rect(whole, &paint, Transform::identity(), None);
+        let mut tile = empty(TILE, TILE)?;
+        let side = i64::from(TILE);
+        let first = [grid.corner().x, grid.corner().y].map(|at| at.floor() as i64);
+        let end = [
+            first[0] + i64::from(grid.width()),
+            first[1] + i64::from(grid.height()),
+        ];
+        let tiles =
+            |axis: usize| first[axis].div_euclid(side)..(end[axis] - 1).div_euclid(side) + 1;
+        for y in tiles(1) {
+            for x in tiles(0) {
+                let origin = [x * side, y * side];
+                draw(image, place, grid.pixels_per_unit(), origin, &mut tile);
+                // What the tile and the grid share, in the tile's pixels.
+                let shared = |axis: usize| {
+                    let from = first[axis].max(origin[axis]) - origin[axis];
+                    from as usize..(end[axis].min(origin[axis] + side) - origin[axis]) as usize
+                };
+                let columns = shared(0);
+                for row in shared(1) {
+                    let to = (origin[1] - first[1] + row as i64) as usize * grid.width() as usize
+                        + (origin[0] - first[0] + columns.start as i64) as usize;
+                    let from = row * TILE as usize;
+                    pixmap.pixels_mut()[to..to + columns.len()]
+                        .copy_from_slice(&tile.pixels()[from + columns.start..from + columns.end]);
+                }
+            }
         }
         Ok(Self { pixmap })
     }
@@ -75,5 +80,35 @@ impl Texture {
             [color.red(), color.green(), color.blue()],
             f32::from(color.alpha()) / 255.0,
         )
+    }
+}
+
+/// Draws an image on a tile that begins at a pixel. All of it is drawn: where the image ends is the surface's own coverage to say.
+fn draw(image: &Pixmap, place: &Place, scale: f64, origin: [i64; 2], tile: &mut Pixmap) {
+    let texel =
+        place.size * scale / DVec2::new(f64::from(image.width()), f64::from(image.height()));
+    let corner = place.min * scale - DVec2::from(origin.map(|at| at as f64));
+    let transform = Transform::from_row(
+        texel.x as f32,
+        0.0,
+        0.0,
+        texel.y as f32,
+        corner.x as f32,
+        corner.y as f32,
+    );
+    let paint = Paint {
+        shader: Pattern::new(
+            image.as_ref(),
+            SpreadMode::Pad,
+            FilterQuality::Bilinear,
+            1.0,
+            transform,
+        ),
+        blend_mode: BlendMode::Source,
+        ..Paint::default()
+    };
+    let [width, height] = [tile.width(), tile.height()].map(|side| side as f32);
+    if let Some(whole) = Rect::from_xywh(0.0, 0.0, width, height) {
+        tile.fill_rect(whole, &paint, Transform::identity(), None);
     }
 }

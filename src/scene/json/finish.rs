@@ -5,25 +5,27 @@ use std::sync::Arc;
 use serde::Deserialize;
 
 use super::surface::{Outcome, text};
-use super::{Images, some};
+use super::{Images, object, some};
+use crate::error;
+use crate::finish::detail::MOST_TURN;
 use crate::finish::{Bump, Environment, Finish, Frame, Material, Profile, Rim, ShadingModel, Tile};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FinishFields {
-    #[serde(default, deserialize_with = "some")]
+    #[serde(default, deserialize_with = "object")]
     rim: Option<RimFields>,
     #[serde(default, deserialize_with = "some")]
     shading: Option<String>,
-    #[serde(default, deserialize_with = "some")]
+    #[serde(default, deserialize_with = "object")]
     material: Option<MaterialFields>,
-    #[serde(default, deserialize_with = "some")]
+    #[serde(default, deserialize_with = "object")]
     texture: Option<TextureFields>,
-    #[serde(default, deserialize_with = "some")]
+    #[serde(default, deserialize_with = "object")]
     bump: Option<BumpFields>,
-    #[serde(default, deserialize_with = "some")]
+    #[serde(default, deserialize_with = "object")]
     frame: Option<FrameFields>,
-    #[serde(default, deserialize_with = "some")]
+    #[serde(default, deserialize_with = "object")]
     environment: Option<EnvironmentFields>,
 }
 
@@ -106,7 +108,13 @@ impl FinishFields {
             finish = finish.with_bump(bump.map_err(text)?);
         }
         if let Some(of) = self.frame {
-            let [angle, twist] = [of.degrees, of.twist].map(f32::to_radians);
+            let turn = |field, degrees: f32| {
+                let most = MOST_TURN.to_degrees().floor();
+                error::within(field, f64::from(degrees), -most, most).map_err(text)?;
+                Ok::<_, String>(degrees.to_radians())
+            };
+            let angle = turn("frame.degrees", of.degrees)?;
+            let twist = turn("frame.twist", of.twist)?;
             let frame = Frame::new(tile(&of.image, of.tile)?, of.depth, angle, twist);
             finish = finish.with_frame(frame.map_err(text)?);
         }
@@ -157,10 +165,21 @@ impl MaterialFields {
         let material = Material::default()
             .with_strengths(self.ambient, self.diffuse, self.specular)
             .and_then(|material| material.with_shininess(self.shininess))
-            .map_err(text)?;
-        match self.attenuation {
-            Some(attenuation) => material.with_attenuation(attenuation).map_err(text),
-            None => Ok(material),
-        }
+            .and_then(|material| match self.attenuation {
+                Some(attenuation) => material.with_attenuation(attenuation),
+                None => Ok(material),
+            });
+        material.map_err(|error| {
+            text(error.renamed(&[
+                ["finish.ambient", "finish.material.ambient"],
+                ["finish.diffuse", "finish.material.diffuse"],
+                ["finish.specular", "finish.material.specular"],
+                ["finish.shininess", "finish.material.shininess"],
+                ["finish.attenuation", "sum of finish.material.attenuation"],
+                ["a0", "finish.material.attenuation[0]"],
+                ["a1", "finish.material.attenuation[1]"],
+                ["a2", "finish.material.attenuation[2]"],
+            ]))
+        })
     }
 }

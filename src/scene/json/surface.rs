@@ -3,10 +3,12 @@
 use std::sync::Arc;
 
 use serde::Deserialize;
+#[cfg(not(feature = "finish"))]
+use serde::de::IgnoredAny;
 
 #[cfg(feature = "finish")]
 use super::finish::FinishFields;
-use super::{Images, some};
+use super::{Images, object, some};
 use crate::error::Error;
 use crate::path::{FillRule, Path};
 use crate::pose::Pose;
@@ -62,17 +64,19 @@ pub(super) struct SurfaceFields {
     d: Option<String>,
     #[serde(default, deserialize_with = "some")]
     fill_rule: Option<String>,
-    #[serde(default, deserialize_with = "some")]
+    #[serde(default, deserialize_with = "object")]
     stroke: Option<StrokeFields>,
-    #[serde(default, deserialize_with = "some")]
+    #[serde(default, deserialize_with = "object")]
     tilt: Option<TiltFields>,
     #[serde(default, deserialize_with = "some")]
     corners: Option<[f32; 4]>,
     #[serde(default, deserialize_with = "some")]
     image: Option<String>,
     #[cfg(feature = "finish")]
-    #[serde(default, deserialize_with = "some")]
+    #[serde(default, deserialize_with = "object")]
     finish: Option<FinishFields>,
+    #[cfg(not(feature = "finish"))]
+    finish: Option<IgnoredAny>,
 }
 
 #[derive(Deserialize)]
@@ -96,7 +100,7 @@ struct TiltFields {
 }
 
 #[derive(Deserialize, Clone, Copy)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "expected a number or a pair of them")]
 enum RadiusFields {
     One(f32),
     Pair([f32; 2]),
@@ -106,22 +110,32 @@ impl SurfaceFields {
     /// The surface, its image read by `images`.
     pub(super) fn build(self, images: &mut Images<'_>) -> Outcome<Surface> {
         self.refuse_foreign_fields()?;
+        #[cfg(not(feature = "finish"))]
+        if self.finish.is_some() {
+            return Err("built without finishes: build with the feature `finish`".to_owned());
+        }
+        if self.image.is_some() && (self.tilt.is_some() || self.corners.is_some()) {
+            return Err("an image is not tilted: leave out `tilt` and `corners`".to_owned());
+        }
         let mut surface = match (self.elevation, &self.corners, &self.tilt) {
             (Some(elevation), None, None) => match &self.image {
                 Some(name) => {
                     let rect = self.image_rect()?;
                     let image = images(name)?;
-                    Surface::image(Arc::new(image), rect, elevation).map_err(text)?
+                    Surface::image(Arc::new(image), rect, elevation)
+                        .map_err(|error| self.named(error))?
                 }
                 None => Surface::new(self.build_shape()?, elevation),
             },
             (Some(elevation), None, Some(tilt)) => {
                 let angle = tilt.degrees.to_radians();
-                let pose = Pose::turned(elevation, tilt.pivot, tilt.axis, angle).map_err(text)?;
+                let pose = Pose::turned(elevation, tilt.pivot, tilt.axis, angle);
+                let pose = pose.map_err(|error| self.named(error))?;
                 Surface::posed(self.build_shape()?, &pose)
             }
             (None, Some(corners), None) => {
-                let pose = Pose::of_corners(self.rect()?, *corners).map_err(text)?;
+                let pose = Pose::of_corners(self.rect()?, *corners);
+                let pose = pose.map_err(|error| self.named(error))?;
                 Surface::posed(self.build_shape()?, &pose)
             }
             (None, None, _) => return Err("missing field `elevation`".to_owned()),
@@ -158,7 +172,6 @@ impl SurfaceFields {
             ("tilt", self.tilt.is_some()),
             ("corners", self.corners.is_some()),
             ("image", self.image.is_some()),
-            #[cfg(feature = "finish")]
             ("finish", self.finish.is_some()),
         ];
         match others.iter().find(|(_, given)| *given) {
@@ -247,30 +260,37 @@ impl SurfaceFields {
             }
             _ => return Err(self.unknown_shape()),
         };
-        shape.map_err(|error| self.named(text(error)))
+        shape.map_err(|error| self.named(error))
     }
 
-    /// What is wrong with a shape's field, by the name that it has in scenes.
-    fn named(&self, reason: String) -> String {
-        let names: &[[&str; 2]] = match self.shape.as_str() {
-            "rrect" => &[["width ", "w "], ["height ", "h "]],
-            "circle" => &[
-                ["center.x ", "cx "],
-                ["center.y ", "cy "],
-                ["radius ", "r "],
-            ],
-            "ellipse" => &[
-                ["center.x ", "cx "],
-                ["center.y ", "cy "],
-                ["radius ", "rx or ry "],
-            ],
-            _ => &[],
+    /// What is wrong, by the names that fields have in scenes.
+    fn named(&self, error: Error) -> String {
+        let radius = match self.shape.as_str() {
+            "circle" => "r",
+            _ if self.radii.is_some() => "radii",
+            _ => "radius",
         };
-        let renamed = names.iter().find_map(|[name, here]| {
-            let rest = reason.strip_prefix(name)?;
-            Some(format!("{here}{rest}"))
-        });
-        renamed.unwrap_or(reason)
+        text(error.renamed(&[
+            ["width", "w"],
+            ["height", "h"],
+            ["radius", radius],
+            ["center.x", "cx"],
+            ["center.y", "cy"],
+            ["radii.x", "rx"],
+            ["radii.y", "ry"],
+            [
+                "elevation",
+                if self.corners.is_some() {
+                    "corners"
+                } else {
+                    "elevation"
+                },
+            ],
+            ["pose.pivot", "tilt.pivot"],
+            ["pose.axis", "tilt.axis"],
+            ["length of pose.axis", "length of tilt.axis"],
+            ["pose.angle", "tilt.degrees"],
+        ]))
     }
 
     fn unknown_shape(&self) -> String {
