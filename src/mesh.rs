@@ -245,11 +245,13 @@ impl Shadow {
             let curved = !self.is_fixed() || outline.edges().any(|e| matches!(e, Edge::Arc(_)));
             let unsure = if curved { CURVED * share / 255.0 } else { 0.0 } + cells::NOISE;
             let mut loops = self.polygons_within(share, 0.0);
+            // What is left out of many at once adds up.
+            let lighter = share / self.crowding(0.0, true) / 255.0;
             for points in &mut loops {
                 for point in &mut *points {
                     *point -= center;
                 }
-                *points = lighten(points, radius, share / self.crowding(0.0, true) / 255.0);
+                *points = lighten(points, radius, lighter);
             }
             let field = Field::Level(Cells::new(&loops, radius));
             return Refinement::new(field, options, rings).run(center, step, unsure);

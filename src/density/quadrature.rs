@@ -79,25 +79,22 @@ pub(crate) fn side(radius: f64) -> impl Iterator<Item = (f64, f64)> + Clone {
 
 /// The same for `exact`: 4 x 4, 12 x 12 or 16 x 16 in each of so many `parts` along both sides.
 pub(crate) fn exact_square(radius: f64, parts: u32) -> impl Iterator<Item = (DVec2, f64)> {
-    let half: &[_] = if radius >= 2.0 {
+    on_square(in_parts(exact_side(radius), parts))
+}
+
+fn exact_side(radius: f64) -> &'static [(f64, f64)] {
+    if radius >= 2.0 {
         &GAUSS_4
     } else if radius >= 1.0 {
         &GAUSS_12
     } else {
         &GAUSS_16
-    };
-    on_square(in_parts(half, parts))
+    }
 }
 
 /// How many parts the square takes where a pixel sees so many periods of a grating across it: each has six points.
 pub(crate) fn parts(radius: f64, periods: f64) -> u32 {
-    let points = if radius >= 2.0 {
-        4.0
-    } else if radius >= 1.0 {
-        12.0
-    } else {
-        16.0
-    };
+    let points = 2.0 * exact_side(radius).len() as f64;
     (6.0 * periods / points).ceil().clamp(1.0, MOST_PARTS) as u32
 }
 

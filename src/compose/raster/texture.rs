@@ -1,5 +1,7 @@
 //! An image as the fill of a surface, pixel by pixel.
 
+use core::ops::Range;
+
 use glam::DVec2;
 use tiny_skia::{
     BlendMode, ColorU8, FilterQuality, Paint, Pattern, Pixmap, PremultipliedColorU8, Rect,
@@ -53,14 +55,21 @@ impl Texture {
         for y in tiles(1) {
             for x in tiles(0) {
                 let origin = [x * side, y * side];
-                draw(image, place, grid.pixels_per_unit(), origin, &mut tile);
                 // What the tile and the grid share, in the tile's pixels.
-                let shared = |axis: usize| {
+                let shared = [0, 1].map(|axis: usize| {
                     let from = first[axis].max(origin[axis]) - origin[axis];
                     from as usize..(end[axis].min(origin[axis] + side) - origin[axis]) as usize
-                };
-                let columns = shared(0);
-                for row in shared(1) {
+                });
+                draw(
+                    image,
+                    place,
+                    grid.pixels_per_unit(),
+                    origin,
+                    &shared,
+                    &mut tile,
+                );
+                let [columns, rows] = shared;
+                for row in rows {
                     let to = (origin[1] - first[1] + row as i64) as usize * grid.width() as usize
                         + (origin[0] - first[0] + columns.start as i64) as usize;
                     let from = row * TILE as usize;
@@ -83,8 +92,16 @@ impl Texture {
     }
 }
 
-/// Draws an image on a tile that begins at a pixel. All of it is drawn: where the image ends is the surface's own coverage to say.
-fn draw(image: &Pixmap, place: &Place, scale: f64, origin: [i64; 2], tile: &mut Pixmap) {
+/// Draws an image on some columns and rows of a tile that begins at a pixel, all of them: where the image ends is the surface's own
+/// coverage to say.
+fn draw(
+    image: &Pixmap,
+    place: &Place,
+    scale: f64,
+    origin: [i64; 2],
+    [columns, rows]: &[Range<usize>; 2],
+    tile: &mut Pixmap,
+) {
     let texel =
         place.size * scale / DVec2::new(f64::from(image.width()), f64::from(image.height()));
     let corner = place.min * scale - DVec2::from(origin.map(|at| at as f64));
@@ -107,8 +124,9 @@ fn draw(image: &Pixmap, place: &Place, scale: f64, origin: [i64; 2], tile: &mut 
         blend_mode: BlendMode::Source,
         ..Paint::default()
     };
-    let [width, height] = [tile.width(), tile.height()].map(|side| side as f32);
-    if let Some(whole) = Rect::from_xywh(0.0, 0.0, width, height) {
-        tile.fill_rect(whole, &paint, Transform::identity(), None);
+    let [left, right] = [columns.start, columns.end].map(|at| at as f32);
+    let [top, bottom] = [rows.start, rows.end].map(|at| at as f32);
+    if let Some(shown) = Rect::from_ltrb(left, top, right, bottom) {
+        tile.fill_rect(shown, &paint, Transform::identity(), None);
     }
 }
