@@ -1,6 +1,7 @@
 //! Triangles over which linear interpolation of density stays within a tolerance.
 //!
-//! Rounded rectangles and circles are strips between rings, which need no triangulator. Outlines of small detail, such as
+//! Rounded rectangles and circles are strips between rings, which need no triangulator, and so are [gentle convex
+//! curves](gentle). Outlines of small detail, such as
 //! icons, are [halved squares](halving), and so is whatever is to be there [quickly](MeshOptions::quick). For all other outlines,
 //! and where nothing of that was found, the tangent construction gives the skeleton: rings from the penumbra's outer edge to the
 //! umbra, at the distances that suit the profile best. Between them and inside of the umbra a constrained Delaunay triangulation
@@ -15,6 +16,7 @@ mod compact;
 mod donut;
 mod export;
 mod field;
+mod gentle;
 mod gouraud;
 pub(crate) mod halving;
 mod lighten;
@@ -42,6 +44,7 @@ use cells::Cells;
 pub use compact::{CompactMesh, CompactVertex};
 pub use export::meshes_to_svg;
 use field::Field;
+use gentle::Gentle;
 use lighten::lighten;
 use options::Effort;
 pub use options::MeshOptions;
@@ -143,19 +146,21 @@ impl Shadow {
         }
     }
 
-    /// The mesh by triangulation; in strips where few triangles are asked for and these have fewer.
+    /// The mesh by triangulation, or in strips along a gentle curve; of whichever has fewer triangles where few are asked for.
     fn triangulated(&self, options: &MeshOptions) -> ShadowMesh {
-        let refined = self.refined(options);
+        let gentle = self.gentle(options);
         if options.effort != Effort::Few {
-            return refined;
+            return gentle.unwrap_or_else(|| self.refined(options));
         }
         let mut strips = MeshBuffers::new();
-        let quality = self.strips(options, &mut Scratch::new(), &mut strips);
-        let fewer = strips.indices.len() <= refined.indices.len();
-        match quality {
-            Ok(Some(quality)) if fewer || !refined.complete => ShadowMesh::filled(strips, quality),
-            _ => refined,
-        }
+        let strips = match self.strips(options, &mut Scratch::new(), &mut strips) {
+            Ok(Some(quality)) => Some(ShadowMesh::filled(strips, quality)),
+            _ => None,
+        };
+        let refined = self.refined(options);
+        let all = gentle.into_iter().chain(strips).chain([refined]);
+        let size = |mesh: &ShadowMesh| (!mesh.complete, mesh.indices.len());
+        all.min_by_key(size).unwrap_or_else(ShadowMesh::empty)
     }
 
     /// The mesh in strips, if the shadow is one of those that have them.
@@ -240,22 +245,63 @@ impl Shadow {
             }
             let loops = |knot: &Knot| (*knot, tangent_loops(&circles, knot.t, flat));
             let rings = pieces.knots.iter().map(loops).collect();
-            // What errors are measured against may itself be a little off, as long as that is stated.
-            let share = FIELD_SHARE * levels;
-            let curved = !self.is_fixed() || outline.edges().any(|e| matches!(e, Edge::Arc(_)));
-            let unsure = if curved { CURVED * share / 255.0 } else { 0.0 } + cells::NOISE;
-            let mut loops = self.polygons_within(share, 0.0);
-            // What is left out of many at once adds up.
-            let lighter = share / self.crowding(0.0, true) / 255.0;
-            for points in &mut loops {
-                for point in &mut *points {
-                    *point -= center;
-                }
-                *points = lighten(points, radius, lighter);
-            }
-            let field = Field::Level(Cells::new(&loops, radius));
+            let (field, unsure) = self.field(&outline, levels, center);
             return Refinement::new(field, options, rings).run(center, step, unsure);
         }
+    }
+}
+
+impl Shadow {
+    /// What errors are measured against, about a centre, and by how much (density) it may itself be off.
+    fn field(&self, outline: &Outline, levels: f64, center: DVec2) -> (Field, f64) {
+        let radius = self.radius();
+        let share = FIELD_SHARE * levels;
+        let curved = !self.is_fixed() || outline.edges().any(|e| matches!(e, Edge::Arc(_)));
+        let unsure = if curved { CURVED * share / 255.0 } else { 0.0 } + cells::NOISE;
+        let mut loops = self.polygons_within(share, 0.0);
+        // What is left out of many at once adds up.
+        let lighter = share / self.crowding(0.0, true) / 255.0;
+        for points in &mut loops {
+            for point in &mut *points {
+                *point -= center;
+            }
+            *points = lighten(points, radius, lighter);
+        }
+        (Field::Level(Cells::new(&loops, radius)), unsure)
+    }
+
+    /// The mesh in strips along the outline, if that is one gentle convex curve.
+    fn gentle(&self, options: &MeshOptions) -> Option<ShadowMesh> {
+        let (levels, radius) = (options.tolerance.as_levels(), self.radius());
+        if options.profile != Profile::Disc || radius == 0.0 {
+            return None;
+        }
+        let flat = radius * GENTLE_FLATNESS;
+        let outline = self.outline(flat);
+        let (min, max) = outline.bounds()?;
+        let center = min.midpoint(max).as_vec2().as_dvec2();
+        let mut polygons = outline.moved(-center).polygons(flat);
+        let points = polygons.pop().filter(|_| polygons.is_empty())?;
+        let curve = Gentle::new(points, radius, flat)?;
+        let far = min.abs().max(max.abs()).max_element() + radius;
+        let rounding = rounding_levels(far, radius);
+        let (mut field, unsure) = self.field(&outline, levels, center);
+        let limit = (levels - rounding) / 255.0 - unsure;
+        if limit <= 0.0 {
+            return None;
+        }
+        let found = curve.mesh(&mut field, limit, options.max_vertices)?;
+        let vertices = found.places.iter().zip(&found.densities);
+        let vertex = |(at, density): (&DVec2, &f64)| MeshVertex {
+            position: (*at + center).as_vec2().to_array(),
+            density: *density as f32,
+        };
+        Some(ShadowMesh {
+            vertices: vertices.map(vertex).collect(),
+            indices: found.triangles.into_flattened(),
+            error_levels: (found.error + unsure) * 255.0 + rounding,
+            complete: true,
+        })
     }
 }
 
@@ -352,6 +398,9 @@ fn rounding_levels(far: f64, radius: f64) -> f64 {
 fn power_of_two_below(value: f64) -> f64 {
     f64::from_bits(value.to_bits() >> 52 << 52)
 }
+
+/// How far the lines that strips go along may be from gentle curves, over the penumbra radius.
+const GENTLE_FLATNESS: f64 = 1e-3;
 
 /// How far the chords of a hard shadow's arcs may be from them, over its extent.
 const FACET: f64 = 1e-5;

@@ -13,7 +13,7 @@
 mod build;
 mod corner;
 mod fan;
-mod join;
+pub(super) mod join;
 mod ray;
 
 use glam::DVec2;

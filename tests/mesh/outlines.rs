@@ -420,3 +420,70 @@ fn crowds_of_dots_keep_their_tolerance() {
         assert!(error <= tolerance, "{error} of {tolerance}");
     }
 }
+
+/// Strips along gentle convex curves: ellipses in every direction, superellipses and others whose curvature changes at once.
+#[test]
+fn gentle_convex_curves_keep_their_tolerance() {
+    let mut lots = Lots(23);
+    let mut worst: f64 = 0.0;
+    for case in 0..60 {
+        let [a, b] = [60.0 + 80.0 * lots.next(), 40.0 + 60.0 * lots.next()];
+        let shape = match case % 3 {
+            0 => Shape::ellipse([100.0, 90.0], [a, b]).unwrap(),
+            1 => {
+                // Each quarter one cubic, from a circle's to a card's.
+                let k = 0.5 + 0.35 * lots.next();
+                let mut path = penumbral::Path::new();
+                path.move_to([a, 0.0])
+                    .cubic_to([a, k * b], [k * a, b], [0.0, b])
+                    .cubic_to([-k * a, b], [-a, k * b], [-a, 0.0])
+                    .cubic_to([-a, -k * b], [-k * a, -b], [0.0, -b])
+                    .cubic_to([k * a, -b], [a, -k * b], [a, 0.0])
+                    .close();
+                Shape::path(&path, FillRule::NonZero).unwrap()
+            }
+            _ => {
+                // A bar with ends of two circles.
+                let [r, s] = [30.0 + 20.0 * lots.next(), 30.0 + 20.0 * lots.next()];
+                let mut path = penumbral::Path::new();
+                path.move_to([-a, -r])
+                    .arc_to([r; 2], 0.0, false, false, [-a, r])
+                    .cubic_to([-a / 3.0, r], [a / 3.0, s], [a, s])
+                    .arc_to([s; 2], 0.0, false, false, [a, -s])
+                    .cubic_to([a / 3.0, -s], [-a / 3.0, -r], [-a, -r])
+                    .close();
+                Shape::path(&path, FillRule::NonZero).unwrap()
+            }
+        };
+        let (sin, cos) = (6.3 * lots.next()).sin_cos();
+        let shape = shape.transformed([cos, sin, -sin, cos, 0.0, 0.0]).unwrap();
+        let light = Light::directional([0.0, 0.0], 2.0 + 14.0 * lots.next()).unwrap();
+        let shadow = light.cast(&shape, 1.0, 0.0).unwrap();
+        let tolerance = TOLERANCES[case / 3 % TOLERANCES.len()];
+        let mesh = shadow.mesh(levels(tolerance));
+        sanity_check(&mesh);
+        let said = mesh.error_levels();
+        assert!(mesh.is_complete() && said <= f64::from(tolerance), "{case}");
+        let error = dense_error(&shadow, &mesh, 8);
+        assert!(
+            error <= f64::from(tolerance),
+            "{case}: {error} of {tolerance}"
+        );
+        worst = worst.max(error / f64::from(tolerance));
+    }
+    println!("60 gentle curves: at most {worst:.3} of the tolerance");
+}
+
+#[test]
+fn strips_along_an_ellipse_have_about_as_few_triangles_as_are_found() {
+    let ellipse = Shape::ellipse([100.0, 100.0], [80.0, 50.0]).unwrap();
+    for (radius, most) in [(3.0, 2_250), (10.8, 1_400)] {
+        let light = Light::directional([0.0, 0.0], radius).unwrap();
+        let shadow = light.cast(&ellipse, 1.0, 0.0).unwrap();
+        let count = |options: MeshOptions| shadow.mesh(options).indices().len() / 3;
+        let options = MeshOptions::new(levels(1.0));
+        let (usual, few) = (count(options), count(options.few()));
+        println!("ellipse, r {radius}: {usual} triangles, {few} where few are asked for");
+        assert!(usual <= most && few <= usual && 10 * usual <= 11 * few);
+    }
+}

@@ -4,15 +4,19 @@ use glam::DVec2;
 
 /// A vertex of a ring: whose corner's it is, where it comes round the middle, in quarters, and its number.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct RingVertex {
-    pub(super) quarter: usize,
-    pub(super) turn: f64,
-    pub(super) index: u32,
-    pub(super) at: DVec2,
+pub(in crate::mesh) struct RingVertex {
+    pub(in crate::mesh) quarter: usize,
+    pub(in crate::mesh) turn: f64,
+    pub(in crate::mesh) index: u32,
+    pub(in crate::mesh) at: DVec2,
 }
 
 /// Triangles between a ring and the next one inside.
-pub(super) fn join(outer: &[RingVertex], inner: &[RingVertex], triangles: &mut Vec<[u32; 3]>) {
+pub(in crate::mesh) fn join(
+    outer: &[RingVertex],
+    inner: &[RingVertex],
+    triangles: &mut Vec<[u32; 3]>,
+) {
     let at = |ring: &[RingVertex], i: usize| {
         let vertex = ring[i % ring.len()];
         let rounds = i / ring.len();
@@ -22,7 +26,7 @@ pub(super) fn join(outer: &[RingVertex], inner: &[RingVertex], triangles: &mut V
     // What leads from corner to corner comes after all of the one and before all of the other: it may be of any length, and what it
     // faced of a corner would be needles as long.
     let middle = |(from, turn, _): (usize, f64, u32), (to, next, _): (usize, f64, u32)| {
-        if from == to {
+        if from % 4 == to % 4 {
             f64::midpoint(turn, next)
         } else {
             to as f64
@@ -46,7 +50,7 @@ pub(super) fn join(outer: &[RingVertex], inner: &[RingVertex], triangles: &mut V
 }
 
 /// Triangles that fill a convex ring.
-pub(super) fn fill(ring: &[RingVertex], triangles: &mut Vec<[u32; 3]>) {
+pub(in crate::mesh) fn fill(ring: &[RingVertex], triangles: &mut Vec<[u32; 3]>) {
     let (mut first, mut last) = (0, ring.len() - 1);
     let corners = |corners: [usize; 3]| corners.map(|i| ring[i].index);
     while first + 1 < last {

@@ -1,0 +1,217 @@
+//! Strips along a gentle convex curve, such as an ellipse: one whose circles of curvature are all larger than the light's disc, so that
+//! the penumbra is a band of one width and the umbra is as smooth as the outline.
+//!
+//! Rings lie where density is as steep as at the best knots of a straight edge's profile. Their vertices are opposite to the middles of
+//! the next ring's chords, as many on each: where one ring had many and the next few, what joins them would go far along, and be off by
+//! more than both. What comes out is measured, its densities are balanced, and it is made finer until it is within the
+//! tolerance. No triangulator is needed.
+
+mod curve;
+mod strips;
+
+use core::f64::consts::FRAC_2_PI;
+
+use glam::DVec2;
+use libm::{ceil, sqrt};
+
+use self::curve::Curve;
+use self::strips::Strips;
+use super::field::Field;
+use super::profile::{Knot, Pieces, Profile};
+use super::samples::Samples;
+use super::strips::join::RingVertex;
+
+/// How far the chords of the outermost and the innermost ring may be from these, over the width of the strip beside them.
+const BEYOND: f64 = 0.04;
+
+/// The share of the tolerance that is aimed at first, how much of it is left from try to try, and how many there are.
+const FIRST_AIM: f64 = 1.1;
+const COARSEST_STEP: f64 = 0.95;
+const FINEST_STEP: f64 = 0.8;
+const TRIES: usize = 14;
+
+/// How often densities are balanced before strips are made finer.
+const BALANCES: usize = 4;
+
+/// Shares of the error that are tried for pieces across.
+const SHARES: u8 = 20;
+
+/// Error is sampled: between samples it may be larger by the rest.
+const SAMPLED: f64 = 0.97;
+
+/// A gentle convex outline seen through a penumbra radius.
+#[derive(Debug)]
+pub(super) struct Gentle {
+    curve: Curve,
+    radius: f64,
+    /// How far the curve's lines may be from it.
+    flatness: f64,
+}
+
+/// A triangulation.
+#[derive(Debug)]
+pub(super) struct Found {
+    pub(super) places: Vec<DVec2>,
+    pub(super) densities: Vec<f64>,
+    pub(super) triangles: Vec<[u32; 3]>,
+    /// The largest error, in density.
+    pub(super) error: f64,
+}
+
+/// Which rings there are.
+#[derive(Debug)]
+struct Rings {
+    /// Between the outermost and the innermost: the place across a straight edge, outwards in penumbra radii, and how much less than
+    /// exact density is.
+    inner: Vec<[f64; 2]>,
+    /// How many vertices each of these has, and each of the two others.
+    count: usize,
+    end_count: usize,
+}
+
+impl Rings {
+    fn vertices(&self) -> usize {
+        self.count * self.inner.len() + 2 * self.end_count
+    }
+}
+
+impl Gentle {
+    /// A loop of lines within `flatness` of an outline, if that is one.
+    pub(super) fn new(points: Vec<DVec2>, radius: f64, flatness: f64) -> Option<Self> {
+        Some(Self {
+            curve: Curve::new(points, radius, flatness)?,
+            radius,
+            flatness,
+        })
+    }
+
+    /// Triangles within an error (density) of a field, of no more than so many vertices, if any are found.
+    pub(super) fn mesh(&self, field: &mut Field, limit: f64, max_vertices: usize) -> Option<Found> {
+        let limit = SAMPLED * limit;
+        let mut aim = FIRST_AIM * limit;
+        let (mut strips, mut samples) = (Strips::default(), Samples::default());
+        for _ in 0..TRIES {
+            let rings = self.rings(aim)?;
+            if rings.vertices() > max_vertices {
+                return None;
+            }
+            self.lay(&rings, field, &mut strips);
+            let mut error = f64::INFINITY;
+            if strips.are_ordered() {
+                for _ in 0..=BALANCES {
+                    error = strips.measure(field, limit, &mut samples);
+                    if error <= limit {
+                        return Some(Found {
+                            places: strips.places,
+                            densities: strips.densities,
+                            triangles: strips.triangles,
+                            error: error / SAMPLED,
+                        });
+                    }
+                    strips.balance();
+                }
+            }
+            aim *= (limit / error).clamp(FINEST_STEP, COARSEST_STEP);
+        }
+        None
+    }
+
+    /// The rings of fewest vertices within an error: what pieces across take of it is left to chords along.
+    fn rings(&self, error: f64) -> Option<Rings> {
+        let rings = |share: u8| {
+            let pieces = Pieces::within(error * f64::from(share) / f64::from(SHARES));
+            let along = error - pieces.error;
+            let [_, inner @ .., _] = &pieces.knots[..] else {
+                return None;
+            };
+            // Knots begin where density is 0.
+            let ring = |knot: &Knot| [-knot.t, Profile::Disc.at(knot.t) - knot.value];
+            let inner: Vec<_> = inner.iter().map(ring).collect();
+            (along > 0.0).then(|| {
+                let count = self.count(&inner, along);
+                Rings {
+                    count,
+                    end_count: self.end_count(&inner, count),
+                    inner,
+                }
+            })
+        };
+        let all = (1..SHARES).filter_map(rings);
+        all.min_by_key(Rings::vertices)
+    }
+
+    /// How many vertices rings have so that their chords are off by so much, half of it to either side.
+    fn count(&self, inner: &[[f64; 2]], along: f64) -> usize {
+        let count = |[t, _]: &[f64; 2]| {
+            let bend: f64 = self.curve.bends(t * self.radius).sum();
+            // What a straight edge's density grows by.
+            let slope = FRAC_2_PI / self.radius * sqrt(1.0 - t * t);
+            bend * sqrt(slope / (16.0 * along))
+        };
+        ceil(inner.iter().map(count).fold(3.0, f64::max)) as usize
+    }
+
+    /// How many the outermost and the innermost have: half as many, unless their chords would be far from them.
+    fn end_count(&self, inner: &[[f64; 2]], count: usize) -> usize {
+        let steepest = inner.iter().map(|[t, _]| t.abs()).fold(0.0, f64::max);
+        let width = (1.0 - steepest) * self.radius;
+        let bend: f64 = self.curve.bends(self.radius).sum();
+        let least = ceil(bend / sqrt(8.0 * BEYOND * width)) as usize;
+        count.div_ceil(2).max(least)
+    }
+
+    /// Lays the rings from the outermost on and joins them.
+    fn lay(&self, rings: &Rings, field: &mut Field, strips: &mut Strips) {
+        strips.clear();
+        let (mut outer, mut inner) = (Vec::new(), Vec::new());
+        let last = rings.inner.len() + 1;
+        for ring in 0..=last {
+            inner.clear();
+            self.lay_ring(rings, ring, strips, &mut inner);
+            if ring > 0 {
+                strips.join(&outer, &inner);
+            }
+            core::mem::swap(&mut outer, &mut inner);
+        }
+        strips.fill(&outer);
+        strips.raise(field);
+    }
+
+    fn lay_ring(
+        &self,
+        rings: &Rings,
+        ring: usize,
+        strips: &mut Strips,
+        laid: &mut Vec<RingVertex>,
+    ) {
+        let inner = ring.checked_sub(1).and_then(|ring| rings.inner.get(ring));
+        let count = match inner {
+            Some(_) => rings.count,
+            None => rings.end_count,
+        };
+        let step = self.curve.bends(0.0).sum::<f64>() / count as f64;
+        let begins = if ring.is_multiple_of(2) { 0.25 } else { 0.75 };
+        self.curve.stations(begins * step, step, count, |station| {
+            let distance = match inner {
+                Some([t, _]) => self.radius * station.distance_at(*t),
+                // Chords touch it from outside.
+                None if ring == 0 => {
+                    let chord = step * step / 8.0 * self.curve.most_growth(self.radius);
+                    self.radius + self.flatness + chord
+                }
+                None => -self.radius - 2.0 * self.flatness,
+            };
+            let at = station.at + station.normal * distance;
+            let index = match inner {
+                Some([_, less]) => strips.push(at, *less),
+                None => strips.push_fixed(at, if ring == 0 { 0.0 } else { 1.0 }),
+            };
+            laid.push(RingVertex {
+                quarter: 0,
+                turn: 4.0 * station.turn,
+                index,
+                at,
+            });
+        });
+    }
+}
