@@ -63,7 +63,8 @@ impl Curve {
         let goes_once_round = (corners.iter().sum::<f64>() - TAU).abs() < 1e-6;
         let is_gentle = (0..count).all(|i| {
             let ends = [i, (i + 1) % count].map(|end| tan(corners[end] / 2.0).max(0.0));
-            lengths[i] - radius * (ends[0] + ends[1]) >= LEFT * lengths[i]
+            // A point that comes twice is refused with the corners.
+            lengths[i] - radius * (ends[0] + ends[1]) > LEFT * lengths[i]
         });
         if count < 3 || !is_convex || !goes_once_round || !is_gentle {
             return None;
@@ -177,6 +178,9 @@ mod tests {
         let mut turned_round = ellipse(80.0, 50.0);
         turned_round.reverse();
         assert!(Curve::new(turned_round, 1.0, 0.01).is_none());
+        let mut twice = ellipse(80.0, 50.0);
+        twice.insert(9, twice[9]);
+        assert!(Curve::new(twice, 1.0, 0.01).is_none());
     }
 
     #[test]
