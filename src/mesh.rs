@@ -26,6 +26,7 @@ mod profile;
 mod refine;
 pub(crate) mod regions;
 mod samples;
+mod search;
 mod settle;
 mod sink;
 pub(crate) mod strips;

@@ -153,8 +153,8 @@ fn crowds_of_dots_under_a_card_are_as_dark_as_polygons() {
         let mut scene = Scene::new([CANVAS; 2], light).unwrap();
         for i in 0..400_u16 {
             let center = [
-                35.0 + 3.0 * f32::from(i % 30),
-                35.0 + 3.0 * f32::from(i / 30),
+                50.0 + 3.0 * f32::from(i % 20),
+                50.0 + 3.0 * f32::from(i / 20),
             ];
             scene.push(Surface::new(dot(center), 10.0)).unwrap();
         }

@@ -19,19 +19,11 @@ use self::strips::Strips;
 use super::field::Field;
 use super::profile::{Knot, Pieces, Profile};
 use super::samples::Samples;
+use super::search;
 use super::strips::join::RingVertex;
 
 /// How far the chords of the outermost and the innermost ring may be from these, over the width of the strip beside them.
 const BEYOND: f64 = 0.04;
-
-/// The share of the tolerance that is aimed at first, how much of it is left from try to try, and how many there are.
-const FIRST_AIM: f64 = 1.1;
-const COARSEST_STEP: f64 = 0.95;
-const FINEST_STEP: f64 = 0.8;
-const TRIES: usize = 14;
-
-/// How often densities are balanced before strips are made finer.
-const BALANCES: usize = 4;
 
 /// Shares of the error that are tried for pieces across.
 const SHARES: u8 = 20;
@@ -75,6 +67,34 @@ impl Rings {
     }
 }
 
+/// Strips while they are looked for.
+struct Tried<'a> {
+    gentle: &'a Gentle,
+    field: &'a mut Field,
+    max_vertices: usize,
+    strips: Strips,
+    samples: Samples,
+}
+
+impl search::Strips for Tried<'_> {
+    fn make(&mut self, aim: f64) -> bool {
+        let rings = self.gentle.rings(aim);
+        let Some(rings) = rings.filter(|rings| rings.vertices() <= self.max_vertices) else {
+            return false;
+        };
+        self.gentle.lay(&rings, self.field, &mut self.strips);
+        self.strips.are_ordered()
+    }
+
+    fn error(&mut self, limit: f64) -> f64 {
+        self.strips.measure(self.field, limit, &mut self.samples)
+    }
+
+    fn balance(&mut self) {
+        self.strips.balance();
+    }
+}
+
 impl Gentle {
     /// A loop of lines within `flatness` of an outline, if that is one.
     pub(super) fn new(points: Vec<DVec2>, radius: f64, flatness: f64) -> Option<Self> {
@@ -87,33 +107,21 @@ impl Gentle {
 
     /// Triangles within an error (density) of a field, of no more than so many vertices, if any are found.
     pub(super) fn mesh(&self, field: &mut Field, limit: f64, max_vertices: usize) -> Option<Found> {
-        let limit = SAMPLED * limit;
-        let mut aim = FIRST_AIM * limit;
-        let (mut strips, mut samples) = (Strips::default(), Samples::default());
-        for _ in 0..TRIES {
-            let rings = self.rings(aim)?;
-            if rings.vertices() > max_vertices {
-                return None;
-            }
-            self.lay(&rings, field, &mut strips);
-            let mut error = f64::INFINITY;
-            if strips.are_ordered() {
-                for _ in 0..=BALANCES {
-                    error = strips.measure(field, limit, &mut samples);
-                    if error <= limit {
-                        return Some(Found {
-                            places: strips.places,
-                            densities: strips.densities,
-                            triangles: strips.triangles,
-                            error: error / SAMPLED,
-                        });
-                    }
-                    strips.balance();
-                }
-            }
-            aim *= (limit / error).clamp(FINEST_STEP, COARSEST_STEP);
-        }
-        None
+        let mut tried = Tried {
+            gentle: self,
+            field,
+            max_vertices,
+            strips: Strips::default(),
+            samples: Samples::default(),
+        };
+        let error = search::within(SAMPLED * limit, &mut tried)?;
+        let strips = tried.strips;
+        Some(Found {
+            places: strips.places,
+            densities: strips.densities,
+            triangles: strips.triangles,
+            error: error / SAMPLED,
+        })
     }
 
     /// The rings of fewest vertices within an error: what pieces across take of it is left to chords along.

@@ -67,6 +67,17 @@ impl Samples {
         most
     }
 
+    /// Calls `take` with each corner and each error beside it, of the samples that were taken before the way up.
+    pub(super) fn each_beside(&self, mut take: impl FnMut(usize, f64)) {
+        for (weights, error) in self.all() {
+            for (corner, weight) in weights.into_iter().enumerate() {
+                if weight >= BESIDE {
+                    take(corner, error);
+                }
+            }
+        }
+    }
+
     /// The samples that were taken before the way up, and their errors.
     pub(super) fn all(&self) -> impl Iterator<Item = (Weights, f64)> {
         self.weights
@@ -158,6 +169,17 @@ impl Samples {
             scale /= 4.0;
         }
     }
+}
+
+/// From which weight on a sample counts as beside a corner.
+const BESIDE: f64 = 0.2;
+
+/// How much of what would balance the samples beside a vertex it is moved by.
+const BALANCE: f64 = 0.8;
+
+/// How much less density a vertex is to have so that the errors beside it are as large above as below.
+pub(super) fn imbalance([least, most]: [f64; 2]) -> f64 {
+    BALANCE * f64::midpoint(least, most)
 }
 
 /// The ways from a sample to its neighbours, in steps along and across.

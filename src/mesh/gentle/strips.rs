@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use crate::mesh::field::Field;
-use crate::mesh::samples::{Samples, Weights, mix, mix_densities};
+use crate::mesh::samples::{Samples, Weights, imbalance, mix, mix_densities};
 use crate::mesh::strips::join::{RingVertex, fill, join};
 
 /// Into how many parts samples cut a triangle's sides: while strips are looked for, and to be sure of them.
@@ -14,10 +14,6 @@ const SPACING: f64 = 0.2;
 
 /// From which part of the limit on the way from samples to the tops beside them is gone.
 const NEAR: f64 = 0.7;
-
-/// From which weight on a sample counts as beside a vertex, and how much of what would balance these a vertex is moved by.
-const BESIDE: f64 = 0.2;
-const BALANCE: f64 = 0.8;
 
 /// Triangles, and what is known of their error.
 #[derive(Debug, Default)]
@@ -148,14 +144,10 @@ impl Strips {
             };
             let (error, _) = samples.worst(at, PARTS[look], spacing, near, errors);
             worst = worst.max(error);
-            for (weights, error) in samples.all() {
-                for (corner, weight) in corners.into_iter().zip(weights) {
-                    if weight >= BESIDE {
-                        let [least, most] = &mut self.beside[corner];
-                        (*least, *most) = (least.min(error), most.max(error));
-                    }
-                }
-            }
+            samples.each_beside(|corner, error| {
+                let [least, most] = &mut self.beside[corners[corner]];
+                (*least, *most) = (least.min(error), most.max(error));
+            });
         }
         worst
     }
@@ -164,8 +156,7 @@ impl Strips {
     pub(super) fn balance(&mut self) {
         for (index, density) in self.densities.iter_mut().enumerate() {
             if !self.fixed[index] {
-                let [least, most] = self.beside[index];
-                *density = (*density - BALANCE * f64::midpoint(least, most)).clamp(0.0, 1.0);
+                *density = (*density - imbalance(self.beside[index])).clamp(0.0, 1.0);
             }
         }
     }

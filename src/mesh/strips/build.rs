@@ -16,6 +16,7 @@ use super::corner::Corner;
 use super::fan::{Bends, Counts, Rings};
 use super::join::{RingVertex, fill, join};
 use super::ray::MIDDLE;
+use crate::mesh::search::{Strips, within};
 
 /// Strips in penumbra radii, for rectangles of any size that have these corners.
 #[derive(Debug, Clone, Default)]
@@ -72,16 +73,33 @@ const SAMPLED: f64 = 0.97;
 const SHARES_BETWEEN: [f64; 3] = [0.5, 0.25, 0.75];
 const UNSEEN: f64 = 0.01;
 
-/// The share of the tolerance that is aimed at first: rules that leave out how bends along and across meet.
-const FIRST_AIM: f64 = 1.1;
+/// Strips for one span, while they are looked for.
+struct Tried<'a> {
+    builder: &'a mut Builder,
+    bends: Bends,
+    /// How many of the span's ends differ.
+    count: usize,
+}
 
-/// By how much the aim shrinks from try to try, and how many there are.
-const COARSEST_STEP: f64 = 0.95;
-const FINEST_STEP: f64 = 0.8;
-const TRIES: usize = 14;
+impl Strips for Tried<'_> {
+    fn make(&mut self, aim: f64) -> bool {
+        let rings = Rings {
+            anchored: self.builder.fan_of != [0; 4],
+            ..rings(&self.bends, aim)
+        };
+        self.builder.place(self.count, &rings) && self.builder.join(self.count, &rings)
+    }
 
-/// How often vertices' densities are balanced before strips are made finer.
-const BALANCES: usize = 4;
+    fn error(&mut self, limit: f64) -> f64 {
+        self.builder.error(self.count, limit)
+    }
+
+    fn balance(&mut self) {
+        for end in &mut self.builder.ends[..self.count] {
+            end.balance();
+        }
+    }
+}
 
 impl Builder {
     /// Makes the template for a span of corners within a tolerance.
@@ -101,29 +119,16 @@ impl Builder {
         }
         let unseen = if count > 1 { UNSEEN } else { 0.0 };
         let limit = SAMPLED * (levels - unseen) / 255.0;
-        let mut aim = FIRST_AIM * limit;
-        for _ in 0..TRIES {
-            let rings = Rings {
-                anchored: self.fan_of != [0; 4],
-                ..rings(&bends, aim)
-            };
-            let mut error = f64::INFINITY;
-            if self.place(count, &rings) && self.join(count, &rings) {
-                for _ in 0..=BALANCES {
-                    error = self.error(count, limit);
-                    if error <= limit {
-                        self.finish(count, template);
-                        template.error_levels = error / SAMPLED * 255.0 + unseen;
-                        return;
-                    }
-                    for end in &mut self.ends[..count] {
-                        end.balance();
-                    }
-                }
-            }
-            aim *= (limit / error).clamp(FINEST_STEP, COARSEST_STEP);
-        }
+        let mut tried = Tried {
+            builder: self,
+            bends,
+            count,
+        };
         template.error_levels = f64::INFINITY;
+        if let Some(error) = within(limit, &mut tried) {
+            self.finish(count, template);
+            template.error_levels = error / SAMPLED * 255.0 + unseen;
+        }
     }
 
     /// Places the points of all fans, as many for the one end as for the other; no where a strip has no width.

@@ -27,9 +27,6 @@ const NEAR: f64 = 0.7;
 const FEW: f64 = 400.0;
 const MOST: u32 = 3;
 
-/// From which weight on a sample counts as beside a vertex.
-const BESIDE: f64 = 0.2;
-
 /// How closely errors are looked at.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Look {
@@ -146,14 +143,11 @@ impl Measure {
                 if !extremes {
                     continue;
                 }
-                for (weights, error) in self.samples.all() {
-                    for (place, weight) in places.into_iter().zip(weights) {
-                        if weight >= BESIDE {
-                            let [least, most] = &mut beside[place.fan][place.point];
-                            (*least, *most) = (least.min(error), most.max(error));
-                        }
-                    }
-                }
+                self.samples.each_beside(|corner, error| {
+                    let place = places[corner];
+                    let [least, most] = &mut beside[place.fan][place.point];
+                    (*least, *most) = (least.min(error), most.max(error));
+                });
             }
         }
         exact.complete = true;

@@ -2,13 +2,11 @@
 
 use glam::DVec2;
 
+use crate::mesh::samples::imbalance;
 use crate::mesh::strips::corner::Corner;
 use crate::mesh::strips::fan::{Fan, Rings};
 use crate::mesh::strips::join::RingVertex;
 use crate::mesh::strips::{APART, SIGNS};
-
-/// How much of what would balance the samples beside a vertex it is moved by.
-const BALANCE: f64 = 0.8;
 
 /// A long side, in penumbra radii: a triangle that is turned round on one longer yet is next to level on all.
 const LONG: f64 = 65_536.0;
@@ -166,8 +164,7 @@ impl State {
     /// Moves densities to where the errors beside each vertex are as large above as below.
     pub(super) fn balance(&mut self) {
         for place in self.places.iter_mut().filter(|place| !place.fixed) {
-            let [least, most] = self.errors[place.fan][place.point];
-            let density = place.density - (BALANCE * f64::midpoint(least, most)) as f32;
+            let density = place.density - imbalance(self.errors[place.fan][place.point]) as f32;
             place.density = density.clamp(0.0, 1.0);
         }
     }
