@@ -1,15 +1,32 @@
 //! Image: a picture with alpha as a surface.
 
+mod sums;
+
+use std::sync::OnceLock;
+
 use glam::DVec2;
+
+use sums::Sums;
 
 use crate::error::{self, Error, MAX_PIXELS, Result};
 
 /// A picture whose transparent parts cast no shadow: RGBA with straight (not premultiplied) alpha, 8 bits each.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone)]
 pub struct Image {
     size: [u32; 2],
     pixels: Vec<u8>,
+    /// Of its alpha, once it casts a shadow that takes them: whatever that falls on, they are the same.
+    rows: OnceLock<Sums>,
+    areas: OnceLock<Sums>,
 }
+
+impl PartialEq for Image {
+    fn eq(&self, other: &Self) -> bool {
+        self.size == other.size && self.pixels == other.pixels
+    }
+}
+
+impl Eq for Image {}
 
 impl Image {
     /// An image of `size` (columns, rows) from its pixels, row by row, four bytes each.
@@ -28,7 +45,12 @@ impl Image {
                 needed,
             });
         }
-        Ok(Self { size, pixels })
+        Ok(Self {
+            size,
+            pixels,
+            rows: OnceLock::new(),
+            areas: OnceLock::new(),
+        })
     }
 
     /// Columns and rows.
@@ -41,6 +63,20 @@ impl Image {
     #[must_use]
     pub fn pixels(&self) -> &[u8] {
         &self.pixels
+    }
+
+    /// The sums of alpha along each row of texels.
+    pub(crate) fn row_sums(&self) -> &Sums {
+        let columns = self.size[0] as usize;
+        self.rows
+            .get_or_init(|| Sums::of_rows(columns, &self.pixels))
+    }
+
+    /// The sums of alpha over rectangles of texels.
+    pub(crate) fn area_sums(&self) -> &Sums {
+        let columns = self.size[0] as usize;
+        self.areas
+            .get_or_init(|| Sums::of_areas(columns, &self.pixels))
     }
 }
 

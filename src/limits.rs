@@ -8,11 +8,11 @@ use crate::scene::Scene;
 /// [`Renderer::render_while`](crate::Renderer).
 ///
 /// The defaults hold for whatever does not say otherwise. With `n` pixels in rows of `w`, `v` vertices of which `c` begin Bézier curves or
-/// arcs of ellipses, the longest of `d` pixels, `x` crossings of outlines with themselves or each other, and `l` bytes of text,
+/// arcs of ellipses, the longest of `d` pixels, `x` crossings of outlines with themselves or each other, `t` texels of images, and `l` bytes of text,
 /// reading and drawing a scene takes no more than
 ///
 /// ```text
-/// 4 n + 20 min(n, max(w, 2^20)) + 2^11 (v + 32 c sqrt(d)) + 2^8 x + 20 l + 2^20 bytes
+/// 4 n + 20 min(n, max(w, 2^20)) + 2^11 (v + 32 c sqrt(d)) + 2^8 x + 32 t + 20 l + 2^20 bytes
 /// ```
 ///
 /// of which the picture itself is 4 n: it is drawn in bands of rows. That is measured, and twice what was found; edges may cross as often as half the square of their number, so whoever draws

@@ -1,6 +1,6 @@
 //! What reading and drawing a scene takes of memory is within the formula of [`penumbral::Limits`].
 
-use penumbral::{Bounds, Renderer, Scene};
+use penumbral::{Bounds, Image, Renderer, Scene};
 use tiny_skia::Pixmap;
 
 /// A scene of surfaces and its vertices.
@@ -12,6 +12,8 @@ struct Case {
     /// How many are curves, and how long in pixels.
     curves: (usize, f64),
     crossings: usize,
+    /// The side of the square image `image.png`.
+    texels: u32,
 }
 
 /// Points about a circle, or across it and back.
@@ -55,6 +57,7 @@ fn cases() -> Vec<Case> {
             vertices: 8,
             curves: (0, 0.0),
             crossings: 0,
+            texels: 1,
         },
         Case {
             name: "a picture of several bands",
@@ -63,6 +66,7 @@ fn cases() -> Vec<Case> {
             vertices: 8,
             curves: (0, 0.0),
             crossings: 0,
+            texels: 1,
         },
         Case {
             name: "points of a polygon",
@@ -71,6 +75,7 @@ fn cases() -> Vec<Case> {
             vertices: 1000,
             curves: (0, 0.0),
             crossings: 0,
+            texels: 1,
         },
         Case {
             name: "crossings",
@@ -79,6 +84,7 @@ fn cases() -> Vec<Case> {
             vertices: 201,
             curves: (0, 0.0),
             crossings: 19698,
+            texels: 1,
         },
         Case {
             name: "curves",
@@ -87,6 +93,7 @@ fn cases() -> Vec<Case> {
             vertices: 600,
             curves: (600, 3.0),
             crossings: 0,
+            texels: 1,
         },
         Case {
             name: "large curves",
@@ -100,6 +107,7 @@ fn cases() -> Vec<Case> {
             vertices: 12,
             curves: (12, 260.0),
             crossings: 500,
+            texels: 1,
         },
         Case {
             name: "cards at one elevation",
@@ -108,6 +116,7 @@ fn cases() -> Vec<Case> {
             vertices: 100 * 8,
             curves: (0, 0.0),
             crossings: 0,
+            texels: 1,
         },
         Case {
             name: "cards at many",
@@ -116,6 +125,21 @@ fn cases() -> Vec<Case> {
             vertices: 12 * 4,
             curves: (0, 0.0),
             crossings: 0,
+            texels: 1,
+        },
+        Case {
+            name: "an image over cards at many",
+            canvas: [200, 200],
+            surfaces: (0..5)
+                .map(|i| card(i, "", i))
+                .chain([
+                    r#"{"shape":"rrect","image":"image.png","x":10,"y":10,"w":90,"h":90,"elevation":9}"#.to_owned(),
+                ])
+                .collect(),
+            vertices: 5 * 4 + 4,
+            curves: (0, 0.0),
+            crossings: 0,
+            texels: 700,
         },
     ]
 }
@@ -129,7 +153,11 @@ fn memory_is_within_the_formula() {
             case.surfaces.join(",")
         );
         let taken = allocation_counter::measure(|| {
-            let scene = Scene::from_json(&text).unwrap();
+            let mut image = |_: &str| {
+                let bytes = vec![128; 4 * (case.texels * case.texels) as usize];
+                Image::from_rgba8([case.texels; 2], bytes).map_err(|error| error.to_string())
+            };
+            let scene = Scene::from_json_with_images(&text, &mut image).unwrap();
             let mut pixmap = Pixmap::new(width, height).unwrap();
             Renderer::new().render(&scene, &mut pixmap).unwrap();
             let all = Bounds {
@@ -149,6 +177,7 @@ fn memory_is_within_the_formula() {
             + 2048 * (case.vertices + lines)
             + 256 * case.crossings
             + 20 * text.len()
+            + 32 * (case.texels * case.texels) as usize
             + (1 << 20);
         println!(
             "{}: {} bytes of {formula}, {pixels} pixels, {} vertices, {} of text",

@@ -1,7 +1,9 @@
 //! The shadow of an image: its alpha, texel by texel, averaged over the light's disc.
 //!
-//! Sums of alpha along each row of texels make a chord's share two look-ups. The chords are those of Gauss points between the
+//! Sums of alpha make a chord's share of a row of texels two look-ups. The chords are those of Gauss points between the
 //! edges of the rows, which are where alpha jumps: for texels of one alpha the rest is smooth.
+
+use std::sync::Arc;
 
 use glam::DVec2;
 use libm::{asin, sin};
@@ -18,40 +20,20 @@ const PIECES: u32 = 24;
 /// The shadow of an image on one receiver.
 #[derive(Debug, Clone)]
 pub(crate) struct AlphaShadow {
+    image: Arc<Image>,
     place: Place,
     radius: f64,
-    size: [usize; 2],
-    /// For each row of texels the sums of its alphas (0 to 1) up to each column, one more than there are columns.
-    along: Vec<f64>,
-    /// The sums of all rows' sums up to each row, one row more than there are.
-    areas: Vec<f64>,
 }
 
 impl AlphaShadow {
-    pub(crate) fn project(image: &Image, place: &Place, projection: &Projection) -> Self {
-        let size = image.size().map(|side| side as usize);
-        let mut along = Vec::with_capacity((size[0] + 1) * size[1]);
-        for row in image.pixels().chunks_exact(4 * size[0]) {
-            let mut sum = 0.0;
-            along.push(sum);
-            for pixel in row.chunks_exact(4) {
-                sum += f64::from(pixel[3]) / 255.0;
-                along.push(sum);
-            }
-        }
-        let mut areas = vec![0.0; size[0] + 1];
-        for (index, sum) in along.iter().enumerate() {
-            areas.push(areas[index] + sum);
-        }
+    pub(crate) fn project(image: &Arc<Image>, place: &Place, projection: &Projection) -> Self {
         Self {
+            image: Arc::clone(image),
             place: Place {
                 min: place.min * projection.scale + projection.offset,
                 size: place.size * projection.scale,
             },
             radius: projection.radius,
-            size,
-            along,
-            areas,
         }
     }
 
@@ -62,6 +44,11 @@ impl AlphaShadow {
     /// The image's own box on the receiver.
     pub(crate) fn hull(&self) -> (DVec2, DVec2) {
         (self.place.min, self.place.min + self.place.size)
+    }
+
+    /// From texel to texel, scene units.
+    fn texel(&self) -> DVec2 {
+        self.place.size / DVec2::from(self.image.size().map(f64::from))
     }
 
     /// Gives `sink` the density of every pixel of the grid that is in the shadow and not hidden.
@@ -96,9 +83,13 @@ impl AlphaShadow {
                 }
             } else if side == 0.0 {
                 self.find_chords(middle(0).y, &mut chords);
-                for (column, density) in columns.clone().zip(&mut densities) {
-                    *density = self.density(middle(column).x, &chords);
-                }
+                self.add(
+                    middle(columns.start).x,
+                    1.0 / scale,
+                    1.0,
+                    &chords,
+                    &mut densities,
+                );
             } else {
                 let mut placed = f64::NAN;
                 for (offset, weight) in quadrature::square(self.radius * scale) {
@@ -107,9 +98,8 @@ impl AlphaShadow {
                         placed = offset.y;
                         self.find_chords(middle(0).y + offset.y, &mut chords);
                     }
-                    for (column, density) in columns.clone().zip(&mut densities) {
-                        *density += weight * self.density(middle(column).x + offset.x, &chords);
-                    }
+                    let first = middle(columns.start).x + offset.x;
+                    self.add(first, 1.0 / scale, weight, &chords, &mut densities);
                 }
             }
             for (column, density) in columns.clone().zip(&densities) {
@@ -121,12 +111,12 @@ impl AlphaShadow {
     }
 
     fn find_chords(&self, y: f64, chords: &mut Chords) {
-        let texel = self.place.size.y / self.size[1] as f64;
+        let texel = self.texel().y;
         let row_at = |y: f64| (y - self.place.min.y) / texel;
         let angles = &mut chords.angles;
         angles.clear();
         angles.extend((0..=PIECES).map(|piece| quadrature::angle(piece, PIECES)));
-        let last = self.size[1] as f64;
+        let last = f64::from(self.image.size()[1]);
         let first_row = row_at(y - self.radius).ceil().clamp(0.0, last) as usize;
         let last_row = row_at(y + self.radius).floor().clamp(0.0, last) as usize;
         for row in first_row..=last_row {
@@ -153,41 +143,29 @@ impl AlphaShadow {
         }
     }
 
-    fn density(&self, x: f64, chords: &Chords) -> f64 {
-        let texel = self.place.size.x / self.size[0] as f64;
-        let width = self.size[0] + 1;
-        let sum = |chord: &Chord| {
-            let row = &self.along[chord.row * width..][..width];
-            let up_to = |x: f64| interpolated(row, (x - self.place.min.x) / texel) * texel;
-            chord.weight * (up_to(x + chord.half) - up_to(x - chord.half))
-        };
-        chords.chords.iter().map(sum).sum()
+    /// Adds so much of the densities at points that are `step` from one to the next, the first of them at `x`.
+    fn add(&self, x: f64, step: f64, weight: f64, chords: &Chords, densities: &mut [f64]) {
+        let texel = self.texel().x;
+        let (x, step) = ((x - self.place.min.x) / texel, step / texel);
+        for chord in &chords.chords {
+            let row = self.image.row_sums().row(chord.row);
+            let (half, weight) = (chord.half / texel, weight * chord.weight * texel);
+            for (column, density) in densities.iter_mut().enumerate() {
+                let x = x + column as f64 * step;
+                *density += weight * (row.up_to(x + half) - row.up_to(x - half));
+            }
+        }
     }
 
     /// The mean alpha over a square about a point.
     fn coverage(&self, middle: DVec2, side: f64) -> f64 {
-        let texel = self.place.size / DVec2::new(self.size[0] as f64, self.size[1] as f64);
+        let (sums, texel) = (self.image.area_sums(), self.texel());
         let [low, high] = [-0.5, 0.5].map(|way| (middle + way * side - self.place.min) / texel);
-        let width = self.size[0] + 1;
-        let up_to = |x: f64, y: f64| {
-            let y = y.clamp(0.0, self.size[1] as f64);
-            let row = (y as usize).min(self.size[1] - 1);
-            let at = |row: usize| interpolated(&self.areas[row * width..][..width], x);
-            let (above, below) = (at(row), at(row + 1));
-            above + (below - above) * (y - row as f64)
-        };
-        let sum = up_to(high.x, high.y) - up_to(low.x, high.y) - up_to(high.x, low.y)
-            + up_to(low.x, low.y);
+        let sum =
+            sums.up_to(high.x, high.y) - sums.up_to(low.x, high.y) - sums.up_to(high.x, low.y)
+                + sums.up_to(low.x, low.y);
         sum * texel.x * texel.y / (side * side)
     }
-}
-
-/// A list of values at 0, 1, 2 and so on, between these and beyond.
-fn interpolated(values: &[f64], at: f64) -> f64 {
-    let last = values.len() - 1;
-    let at = at.clamp(0.0, last as f64);
-    let index = (at as usize).min(last - 1);
-    values[index] + (values[index + 1] - values[index]) * (at - index as f64)
 }
 
 /// Chords of the disc about points of one height.
@@ -228,7 +206,7 @@ mod tests {
         ] {
             let light = Light::directional([0.0, 0.0], radius).unwrap();
             let rect = [20.3, 15.6, 40.0, 30.0];
-            let image = Image::from_rgba8([7, 5], vec![255; 4 * 35]).unwrap();
+            let image = Arc::new(Image::from_rgba8([7, 5], vec![255; 4 * 35]).unwrap());
             let projection = light.projection(1.0, 0.0).unwrap();
             let shadow = AlphaShadow::project(&image, &Place::new(rect).unwrap(), &projection);
             let mut ours = vec![0.0; 90 * 80];
@@ -267,7 +245,7 @@ mod tests {
             .iter()
             .flat_map(|&alpha| [10, 20, 30, alpha])
             .collect();
-        let image = Image::from_rgba8([3, 2], pixels).unwrap();
+        let image = Arc::new(Image::from_rgba8([3, 2], pixels).unwrap());
         let light = Light::directional([0.0, 0.0], 7.0).unwrap();
         let grid = Grid::new([0.0, 0.0], [60, 50], 1.0).unwrap();
         let projection = light.projection(1.0, 0.0).unwrap();
