@@ -82,8 +82,14 @@ impl Hidden {
 
     /// Hides the pixels that one of many shapes covers wholly.
     pub fn add_all<'a>(&mut self, shapes: impl Iterator<Item = &'a Shape>, scratch: &mut Scratch) {
+        let mut most = MANY;
         for shape in shapes {
             self.push_covered(shape, scratch);
+            // Shapes on one another hide the same pixels: memory is for those, not for all shapes' rows.
+            if self.spans.len() > most {
+                self.seal();
+                most = MANY + 2 * self.spans.len();
+            }
         }
         self.seal();
     }
@@ -296,6 +302,9 @@ impl Hidden {
         scratch.give(edges);
     }
 }
+
+/// Spans that are kept as they come before they are joined.
+const MANY: usize = 1 << 16;
 
 /// The largest rectangle, in pixels, that is told from one whose sides are not quite level: rectangles are found within 1e-9 of their
 /// size.

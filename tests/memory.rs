@@ -1,6 +1,6 @@
 //! What reading and drawing a scene takes of memory is within the formula of [`penumbral::Limits`].
 
-use penumbral::{Bounds, Image, Renderer, Scene};
+use penumbral::{Bounds, FillRule, Grid, Hidden, Image, Renderer, Scene, Scratch, Shape};
 use tiny_skia::Pixmap;
 
 /// A scene of surfaces and its vertices.
@@ -188,4 +188,28 @@ fn memory_is_within_the_formula() {
         );
         assert!(taken.bytes_max <= formula as u64, "{}", case.name);
     }
+}
+
+/// What hides pixels takes memory for its edges and for the pixels, not for their product.
+#[test]
+fn hidden_pixels_take_memory_by_edges_and_rows() {
+    let teeth = 2500;
+    let comb: Vec<[f32; 2]> = (0..teeth)
+        .flat_map(|tooth| {
+            let x = 0.05 * tooth as f32;
+            [[x, 0.0], [x + 0.01, 4000.0]]
+        })
+        .chain([[126.0, 4000.0], [126.0, 0.0]])
+        .collect();
+    let comb = Shape::polygon(&[comb], FillRule::NonZero).unwrap();
+    let card = Shape::rect(1.0, 0.0, 120.0, 4000.0).unwrap();
+    let grid = Grid::new([0.0, 0.0], [128, 4000], 1.0).unwrap();
+    let mut hidden = Hidden::new(&grid);
+    let taken = allocation_counter::measure(|| hidden.add(&comb, &mut Scratch::new()));
+    println!("a comb: {} bytes", taken.bytes_max);
+    assert!(taken.bytes_max < 8 << 20, "{}", taken.bytes_max);
+    let cards = core::iter::repeat_n(&card, 1000);
+    let taken = allocation_counter::measure(|| hidden.add_all(cards, &mut Scratch::new()));
+    println!("cards on one another: {} bytes", taken.bytes_max);
+    assert!(taken.bytes_max < 8 << 20, "{}", taken.bytes_max);
 }

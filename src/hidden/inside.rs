@@ -10,24 +10,38 @@ use glam::DVec2;
 use crate::density::frame::whole_below;
 use crate::outline::{Arc, Edge};
 
-/// The part of an edge in one row.
+/// A line that is not left of or right of what it stands for by more than a margin.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Crossing {
-    row: u32,
+struct Line {
+    upper: DVec2,
+    lower: DVec2,
+    slope: f64,
+    margin: f64,
     /// By how much the winding number is larger right of it.
+    winding: i32,
+    /// The rows that it may pass: the first, and the first behind them.
+    rows: [u32; 2],
+}
+
+/// The part of a line in one row.
+#[derive(Debug, Clone, Copy)]
+struct Crossing {
     winding: i32,
     /// The first column that it may pass and the first behind it that it does not.
     left: i32,
     right: i32,
 }
 
-/// Memory for the crossings of one outline.
+/// Memory for the lines of one outline.
 #[derive(Debug, Default)]
 pub(crate) struct Inside {
-    crossings: Vec<Crossing>,
-    /// The same row by row, and where each row's begin.
-    sorted: Vec<Crossing>,
+    lines: Vec<Line>,
+    /// The same by their first rows, and where each row's begin.
+    sorted: Vec<Line>,
     starts: Vec<u32>,
+    /// Those that may pass a row, and what they do there.
+    active: Vec<u32>,
+    crossings: Vec<Crossing>,
 }
 
 /// Beyond all columns that a grid may have.
@@ -46,75 +60,41 @@ impl Inside {
         [width, height]: [u32; 2],
         mut push: impl FnMut(u32, u32, u32),
     ) {
-        self.crossings.clear();
+        self.lines.clear();
         for edge in edges {
             match edge {
                 Edge::Line(line) | Edge::Border(line) => {
-                    self.push_line(line.from, line.to, margin, height);
+                    self.lines
+                        .extend(Line::new(line.from, line.to, margin, height));
                 }
                 Edge::Arc(arc) => self.push_arc(&arc, margin, height),
             }
         }
-        sort_by_row(
-            &self.crossings,
-            |crossing| crossing.row,
-            height,
-            &mut self.sorted,
-            &mut self.starts,
-        );
+        let Self {
+            lines,
+            sorted,
+            starts,
+            active,
+            crossings,
+        } = self;
+        sort_by_row(lines, |line| line.rows[0], height, sorted, starts);
+        active.clear();
         let columns = width as i32;
         for row in 0..height {
-            let range = self.starts[row as usize] as usize..self.starts[row as usize + 1] as usize;
-            let crossings = &mut self.sorted[range];
+            active.extend(starts[row as usize]..starts[row as usize + 1]);
+            active.retain(|&line| row < sorted[line as usize].rows[1]);
+            crossings.clear();
+            crossings.extend(active.iter().map(|&line| sorted[line as usize].in_row(row)));
             crossings.sort_unstable_by_key(|crossing| crossing.left);
-            let (mut winding, mut reached) = (0, 0);
+            let (mut winding, mut passed) = (0, 0);
             for crossing in &*crossings {
                 let end = crossing.left.min(columns);
-                if winding != 0 && end > reached {
-                    push(row, reached as u32, end as u32);
+                if winding != 0 && end > passed {
+                    push(row, passed as u32, end as u32);
                 }
-                reached = reached.max(crossing.right);
+                passed = passed.max(crossing.right);
                 winding += crossing.winding;
             }
-        }
-    }
-
-    fn push_line(&mut self, from: DVec2, to: DVec2, margin: f64, height: u32) {
-        let (upper, lower, sign) = if from.y < to.y {
-            (from, to, 1)
-        } else {
-            (to, from, -1)
-        };
-        let first = (upper.y - margin).floor().max(0.0);
-        let end = (lower.y + margin).ceil().min(f64::from(height));
-        if first >= end {
-            return;
-        }
-        let slope = if upper.y < lower.y {
-            (lower.x - upper.x) / (lower.y - upper.y)
-        } else {
-            0.0
-        };
-        let (least, most) = (upper.x.min(lower.x), upper.x.max(lower.x));
-        let at = |y: f64| (upper.x + (y - upper.y) * slope).clamp(least, most);
-        // A level line is passed by all of its row.
-        let level = upper.y == lower.y;
-        for row in first as u32..end as u32 {
-            let y = f64::from(row);
-            // What it stands for may pass the row where the line itself is so much above or below.
-            let (top, bottom) = (at(y - margin), at(y + 1.0 + margin));
-            let crosses = upper.y <= y + 0.5 && y + 0.5 < lower.y;
-            let (left, right) = if level {
-                (least, most)
-            } else {
-                (top.min(bottom), top.max(bottom))
-            };
-            self.crossings.push(Crossing {
-                row,
-                winding: if crosses { sign } else { 0 },
-                left: column(left - margin),
-                right: -column(-right - margin),
-            });
         }
     }
 
@@ -135,8 +115,59 @@ impl Inside {
             } else {
                 arc.center + spoke
             };
-            self.push_line(from, to, margin.max(FLATNESS), height);
+            self.lines
+                .extend(Line::new(from, to, margin.max(FLATNESS), height));
             from = to;
+        }
+    }
+}
+
+impl Line {
+    /// None if it passes no row.
+    #[inline(always)]
+    fn new(from: DVec2, to: DVec2, margin: f64, height: u32) -> Option<Self> {
+        let (upper, lower, winding) = if from.y < to.y {
+            (from, to, 1)
+        } else {
+            (to, from, -1)
+        };
+        let first = (upper.y - margin).floor().max(0.0);
+        let end = (lower.y + margin).ceil().min(f64::from(height));
+        (first < end).then(|| Self {
+            upper,
+            lower,
+            slope: (lower.x - upper.x) / (lower.y - upper.y),
+            margin,
+            winding,
+            rows: [first as u32, end as u32],
+        })
+    }
+
+    #[inline(always)]
+    fn in_row(&self, row: u32) -> Crossing {
+        let Self {
+            upper,
+            lower,
+            slope,
+            margin,
+            ..
+        } = *self;
+        let (least, most) = (upper.x.min(lower.x), upper.x.max(lower.x));
+        let y = f64::from(row);
+        // A level line is passed by all of its row.
+        let (left, right) = if upper.y == lower.y {
+            (least, most)
+        } else {
+            let at = |y: f64| (upper.x + (y - upper.y) * slope).clamp(least, most);
+            // What it stands for may pass the row where the line itself is so much above or below.
+            let (top, bottom) = (at(y - margin), at(y + 1.0 + margin));
+            (top.min(bottom), top.max(bottom))
+        };
+        let crosses = upper.y <= y + 0.5 && y + 0.5 < lower.y;
+        Crossing {
+            winding: if crosses { self.winding } else { 0 },
+            left: column(left - margin),
+            right: -column(-right - margin),
         }
     }
 }
