@@ -19,7 +19,7 @@ use crate::paint::Paint;
 use crate::plan::Method;
 use crate::scratch::Scratch;
 use crate::shadow::Shadow;
-use crate::shape::{CornerRadii, Shape};
+use crate::shape::Shape;
 use crate::tolerance::Tolerance;
 
 /// What masks of rounded rectangles' shadows are kept by: it tells neither where the shadow is, in whole pixels, nor its
@@ -216,11 +216,7 @@ impl NinePatch {
     /// None for keys from [`Shadow::key`].
     pub fn draw(key: &ShadowKey, scratch: &mut Scratch) -> Result<Self> {
         let (rounded, radius, size, insets) = key.layout();
-        let side = rounded.max - rounded.min;
-        let [x, y, width, height] =
-            [rounded.min.x, rounded.min.y, side.x, side.y].map(|v| v as f32);
-        let radii = CornerRadii::from(rounded.radii.map(|r| r as f32));
-        let shape = Shape::rounded_rect(x, y, width, height, radii)?;
+        let shape = Shape::of_box(rounded.min, rounded.max - rounded.min, rounded.radii);
         let shadow = Shadow::project(&[shape], &Projection::in_place(radius));
         let grid = Grid::new([0.0, 0.0], size, 1.0)?;
         let mut mask = vec![0; size[0] as usize * size[1] as usize];

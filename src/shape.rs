@@ -290,6 +290,11 @@ impl Shape {
         Some(points.fold((first, first), |(min, max), p| (min.min(p), max.max(p))))
     }
 
+    /// A rectangle with round corners that fit, none of whose numbers is rounded.
+    pub(crate) fn of_box(min: DVec2, size: DVec2, radii: [f64; 4]) -> Self {
+        Self::simple(rounded_rect_contour(min, size, radii.map(DVec2::splat)))
+    }
+
     fn simple(contour: Contour) -> Self {
         Self {
             contours: vec![contour],

@@ -39,8 +39,7 @@ impl Shape {
                 return Ok(Some(self.clone()));
             }
             if self.is_box() {
-                let size = (high - low).to_array().map(|v| v as f32);
-                return Self::rect(low.x as f32, low.y as f32, size[0], size[1]).map(Some);
+                return Ok(Some(Self::of_box(low, high - low, [0.0; 4])));
             }
         }
         let of = |shape: &Self| Outline::of_flattened(shape, FLATNESS).polygons(FLATNESS);
@@ -97,5 +96,16 @@ mod tests {
         let cut = list.clipped(&rounded).unwrap().unwrap();
         let corners = (4.0 - core::f64::consts::PI) * 100.0;
         assert!((area(&cut) - (5000.0 - corners)).abs() < 0.02);
+    }
+
+    #[test]
+    fn boxes_stay_where_they_are() {
+        let card = Shape::rect(9000.0, 0.0, 10.0, 10.0).unwrap();
+        let card = card.transformed([1.0, 0.0, 0.0, 1.0, 0.1, 0.0]).unwrap();
+        let list = Shape::rect(8990.0, 5.0, 30.0, 30.0).unwrap();
+        let cut = card.clipped(&list).unwrap().unwrap();
+        let ((min, max), (cut_min, cut_max)) = (card.hull().unwrap(), cut.hull().unwrap());
+        assert!((cut_min.x - min.x).abs() < 1e-11 && (cut_max.x - max.x).abs() < 1e-11);
+        assert!((cut_min.y, cut_max.y) == (5.0, max.y));
     }
 }
