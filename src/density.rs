@@ -255,6 +255,7 @@ mod tests {
     use crate::mesh::{MeshBuffers, MeshOptions, MeshVertex};
     use crate::paint::Paint;
     use crate::path::{FillRule, Path};
+    use crate::scratch;
     use crate::shape::Shape;
     use crate::tone::Color;
 
@@ -265,29 +266,6 @@ mod tests {
         assert_eq!(averaged_side(2.0), 0.5);
         assert_eq!(averaged_side(3.0), 0.0);
         assert_eq!(averaged_side(100.0), 0.0);
-    }
-
-    /// Every level that this machine has.
-    #[cfg(not(penumbral_scalar))]
-    fn levels() -> Vec<Level> {
-        let best = Level::new();
-        let mut levels = Vec::new();
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        {
-            levels.extend(best.as_sse2().map(Level::Sse2));
-            levels.extend(best.as_sse4_2().map(Level::Sse4_2));
-            levels.extend(best.as_avx2().map(Level::Avx2));
-        }
-        levels.push(best);
-        levels
-    }
-
-    /// The scalar level and the best, with which all others are compared where it was not asked for:
-    /// `RUSTFLAGS='--cfg penumbral_scalar' cargo test --lib every_simd_level`.
-    #[cfg(penumbral_scalar)]
-    fn levels() -> Vec<Level> {
-        let scalar = Level::Fallback(fearless_simd::Fallback::new());
-        vec![scalar, Level::new()]
     }
 
     fn shapes() -> Vec<Shape> {
@@ -309,7 +287,7 @@ mod tests {
 
     #[test]
     fn every_simd_level_gives_the_same_bits() {
-        let levels = levels();
+        let levels = scratch::levels();
         println!("{levels:?}");
         // Where nothing is optimised each takes a minute.
         std::thread::scope(|scope| {

@@ -91,3 +91,26 @@ impl Scratch {
         self.edges.push(edges);
     }
 }
+
+/// Every level that this machine has.
+#[cfg(all(test, not(penumbral_scalar)))]
+pub(crate) fn levels() -> Vec<Level> {
+    let best = Level::new();
+    let mut levels = Vec::new();
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    {
+        levels.extend(best.as_sse2().map(Level::Sse2));
+        levels.extend(best.as_sse4_2().map(Level::Sse4_2));
+        levels.extend(best.as_avx2().map(Level::Avx2));
+    }
+    levels.push(best);
+    levels
+}
+
+/// The scalar level and the best, with which all others are compared where it was not asked for:
+/// `RUSTFLAGS='--cfg penumbral_scalar' cargo test --lib every_simd_level`.
+#[cfg(all(test, penumbral_scalar))]
+pub(crate) fn levels() -> Vec<Level> {
+    let scalar = Level::Fallback(fearless_simd::Fallback::new());
+    vec![scalar, Level::new()]
+}

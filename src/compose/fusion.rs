@@ -126,6 +126,7 @@ impl Fusion {
             let start = grid.corner() + DVec2::new(f64::from(columns.start), f64::from(y));
             let at = row * width..(row + 1) * width;
             self.meet.mend(
+                scratch.level(),
                 &members,
                 &mut companies,
                 start,

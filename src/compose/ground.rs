@@ -155,3 +155,49 @@ impl GroundShadows<'_> {
 fn opaque(color: Color) -> Color {
     Color::rgb(color.r, color.g, color.b)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::light::Light;
+    use crate::path::{FillRule, Path};
+    use crate::scene::Surface;
+    use crate::scratch;
+
+    /// Two cards whose sides cross in one disc, a path that three casters meet on, and one seen through.
+    #[test]
+    fn every_simd_level_gives_the_same_bits_where_casters_meet() {
+        let light = Light::new([60.0, 10.0, 300.0], 200.0).unwrap();
+        let mut scene = Scene::new([130.0, 120.0], light).unwrap();
+        let mut bird = Path::new();
+        bird.move_to([30.0, 20.0]);
+        bird.cubic_to([90.0, 10.0], [110.0, 60.0], [60.0, 100.0]);
+        bird.cubic_to([20.0, 90.0], [10.0, 40.0], [30.0, 20.0]);
+        let shapes = [
+            (Shape::rect(20.3, 30.1, 60.0, 40.0).unwrap(), 6.0),
+            (
+                Shape::rounded_rect(50.2, 20.4, 50.0, 60.0, 9.0).unwrap(),
+                11.0,
+            ),
+            (Shape::path(&bird, FillRule::NonZero).unwrap(), 17.0),
+            (Shape::circle([40.0, 70.0], 22.0).unwrap(), 24.0),
+        ];
+        for (shape, elevation) in shapes {
+            scene.push(Surface::new(shape, elevation)).unwrap();
+        }
+        let shadows = scene.ground_shadows().unwrap();
+        let drawn = scratch::levels().into_iter().map(|level| {
+            let mut map = DensityMap::default();
+            let options = PixelOptions::default();
+            shadows
+                .draw(&mut map, &options, &mut Scratch::at_level(level))
+                .unwrap();
+            map.densities
+                .iter()
+                .map(|d| d.to_bits())
+                .collect::<Vec<_>>()
+        });
+        let drawn: Vec<_> = drawn.collect();
+        assert!(drawn.windows(2).all(|pair| pair[0] == pair[1]));
+    }
+}

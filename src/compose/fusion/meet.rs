@@ -39,9 +39,8 @@ enum Lines {
 pub(super) type Companies<'a> = BTreeMap<Seen, Company<'a>>;
 
 /// Memory to follow the light where casters meet.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Meet {
-    level: Level,
     chords: Chords,
     /// For each member what discs about points of some rows may meet, and where these rows are.
     near: Vec<NearRows>,
@@ -56,26 +55,11 @@ pub(super) struct Meet {
     shared: Lane,
 }
 
-impl Default for Meet {
-    fn default() -> Self {
-        Self {
-            level: Level::new(),
-            chords: Chords::default(),
-            near: Vec::new(),
-            near_rows: 0.0..0.0,
-            together: [0.0; LANES],
-            densities: Vec::new(),
-            of_row: Vec::new(),
-            hidden: Vec::new(),
-            shared: [0.0; LANES],
-        }
-    }
-}
-
 impl Meet {
     /// Mends the pixels of a row, the first of which begins at `start`, from which several members hide a part of the disc.
     pub(super) fn mend<'a>(
         &mut self,
+        level: Level,
         members: &'a [Member],
         companies: &mut Companies<'a>,
         start: DVec2,
@@ -95,7 +79,7 @@ impl Meet {
                 self.find_near(members, start.y);
             }
             let middle = start + DVec2::new((run.start - row.start) as f64, 0.0) + 0.5;
-            self.mend_run(company, middle, pixels, run);
+            self.mend_run(level, company, middle, pixels, run);
         }
     }
 
@@ -121,6 +105,7 @@ impl Meet {
     /// Mends pixels of one company, the first of which has its middle there.
     fn mend_run(
         &mut self,
+        level: Level,
         company: &Company<'_>,
         middle: DVec2,
         pixels: &mut Pixels,
@@ -154,7 +139,7 @@ impl Meet {
                     Lines::Cross(wedge) => {
                         if !crossed.contains(&index) {
                             crossed = index..(index + LANES).min(count);
-                            wedge.shared(self.level, middle, crossed.clone(), &mut self.shared);
+                            wedge.shared(level, middle, crossed.clone(), &mut self.shared);
                         }
                         self.shared[index - crossed.start]
                     }
@@ -178,7 +163,7 @@ impl Meet {
                     placed = Some(first - behind);
                     self.place(company, start, 0.0, (blocks * lanes) as usize);
                 }
-                self.follow(company, start, behind as f32, asked);
+                self.follow(level, company, start, behind as f32, asked);
             }
             let lanes = lane as usize * square.per_pixel..(lane as usize + 1) * square.per_pixel;
             let weights = &square.weights[lanes.clone()];
@@ -246,11 +231,17 @@ impl Meet {
 
     /// Follows the light to the pixels that are worked on together, the first of which is so many pixels `behind` one that has its
     /// middle there. Only of some of them it is asked what they see.
-    fn follow(&mut self, company: &Company<'_>, middle: DVec2, behind: f32, asked: Range<usize>) {
+    fn follow(
+        &mut self,
+        level: Level,
+        company: &Company<'_>,
+        middle: DVec2,
+        behind: f32,
+        asked: Range<usize>,
+    ) {
         let square = &company.square;
         let mut points = square.points;
         points.pixels.iter_mut().for_each(|pixel| *pixel += behind);
-        let level = self.level;
         let count = company.partial.len();
         self.together = [0.0; LANES];
         for densities in [&mut self.densities, &mut self.of_row] {
