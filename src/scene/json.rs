@@ -2,51 +2,24 @@
 
 #[cfg(feature = "finish")]
 mod finish;
+mod light;
+mod members;
+mod optional;
+mod part;
 mod surface;
 
-use core::marker::PhantomData;
-
-use serde::de::value::MapAccessDeserializer;
-use serde::de::{MapAccess, Visitor};
-use serde::{Deserialize, Deserializer};
+use serde::Deserialize;
 use serde_json::value::RawValue;
 
-use self::surface::SurfaceFields;
-use super::group::MAX_DEPTH;
-use super::{Group, Overlap, Scene, Surface};
+use self::light::LightFields;
+use self::members::{Member, Members};
+use self::optional::some;
+use self::part::Part;
+use super::{Overlap, Scene};
 use crate::error::{Error, Result};
 use crate::image::Image;
-use crate::light::Light;
 use crate::limits::{Limits, at_most};
 use crate::tone::{Blending, Color, Tone};
-
-/// A field that is there has a value: `null` would be a silent default.
-fn some<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
-    reader: D,
-) -> core::result::Result<Option<T>, D::Error> {
-    T::deserialize(reader).map(Some)
-}
-
-/// An object with named fields: a list of values without names would be taken for one.
-fn object<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
-    reader: D,
-) -> core::result::Result<Option<T>, D::Error> {
-    struct Object<T>(PhantomData<T>);
-
-    impl<'de, T: Deserialize<'de>> Visitor<'de> for Object<T> {
-        type Value = T;
-
-        fn expecting(&self, text: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-            text.write_str("an object")
-        }
-
-        fn visit_map<A: MapAccess<'de>>(self, map: A) -> core::result::Result<T, A::Error> {
-            T::deserialize(MapAccessDeserializer::new(map))
-        }
-    }
-
-    reader.deserialize_map(Object(PhantomData)).map(Some)
-}
 
 /// Each field as the piece of text that it is, so that what is wrong with one can be said with its place.
 #[derive(Deserialize)]
@@ -72,66 +45,6 @@ struct SceneFields<'a> {
     #[serde(borrow, default, deserialize_with = "some")]
     overlap: Option<&'a RawValue>,
     surfaces: Vec<&'a RawValue>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct LightFields {
-    #[serde(default, deserialize_with = "some")]
-    x: Option<f32>,
-    #[serde(default, deserialize_with = "some")]
-    y: Option<f32>,
-    #[serde(default, deserialize_with = "some")]
-    z: Option<f32>,
-    #[serde(default, deserialize_with = "some")]
-    radius: Option<f32>,
-    #[serde(default, deserialize_with = "some")]
-    offset: Option<[f32; 2]>,
-    #[serde(default, deserialize_with = "some")]
-    spread: Option<f32>,
-    #[serde(default, deserialize_with = "some")]
-    key: Option<f32>,
-}
-
-impl LightFields {
-    fn build(&self) -> core::result::Result<Light, String> {
-        let light = match (
-            self.x,
-            self.y,
-            self.z,
-            self.radius,
-            self.offset,
-            self.spread,
-        ) {
-            (Some(x), Some(y), Some(z), Some(radius), None, None) => Light::new([x, y, z], radius),
-            (None, None, None, None, Some(offset), Some(spread)) => {
-                Light::directional(offset, spread)
-            }
-            _ => {
-                return Err(
-                    "a light needs `x`, `y`, `z` and `radius`, or `offset` and `spread`".to_owned(),
-                );
-            }
-        };
-        light.map_err(|error| error.to_string())
-    }
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct GroupFields<'a> {
-    #[serde(borrow)]
-    group: Vec<&'a RawValue>,
-    elevation: f32,
-    #[serde(borrow, default, deserialize_with = "some")]
-    clip: Option<&'a RawValue>,
-}
-
-/// What tells a group from a surface.
-#[derive(Deserialize)]
-struct MaybeGroup {
-    #[serde(default)]
-    group: Option<serde::de::IgnoredAny>,
 }
 
 /// Reads an image that a scene names.
@@ -219,14 +132,11 @@ impl Scene {
     ) -> Result<Self> {
         // Some editors begin a file with a byte order mark.
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let whole = Part { text, part: text };
+        let whole = Part::whole(text);
         at_most("bytes", text.len(), limits.scene_length)
             .map_err(|error| whole.refuse("scene", &error))?;
         let fields: SceneFields<'_> = whole.read_object("scene")?;
-        let part = |raw: &'_ RawValue| Part {
-            text,
-            part: part_of(text, raw),
-        };
+        let part = |raw| whole.within(raw);
 
         let light = part(fields.light);
         let of_light: LightFields = light.read_object("light")?;
@@ -299,13 +209,7 @@ impl Scene {
             .check(&scene)
             .and_then(|()| at_most("surfaces", fields.surfaces.len(), limits.surfaces))
             .map_err(|error| whole.refuse("scene", &error))?;
-        let mut members = Members {
-            text,
-            limits,
-            count: 0,
-            vertices: 0,
-            images,
-        };
+        let mut members = Members::new(limits, images);
         for (index, raw) in fields.surfaces.into_iter().enumerate() {
             let field = format!("surfaces[{index}]");
             let refuse = |error: Error| part(raw).refuse(&field, &error);
@@ -315,166 +219,6 @@ impl Scene {
             }
         }
         Ok(scene)
-    }
-}
-
-/// Reads surfaces and groups of a scene.
-struct Members<'a, 'i> {
-    text: &'a str,
-    limits: &'i Limits,
-    /// How many there were, and the vertices of all.
-    count: usize,
-    vertices: usize,
-    images: &'i mut Images<'i>,
-}
-
-enum Member {
-    Surface(Surface),
-    Group(Group),
-}
-
-impl<'a> Members<'a, '_> {
-    fn read(&mut self, part: Part<'a>, field: &str, depth: usize) -> Result<Member> {
-        self.count += 1;
-        at_most("surfaces", self.count, self.limits.surfaces)
-            .map_err(|error| part.refuse(field, &error))?;
-        if depth > MAX_DEPTH {
-            return Err(part.refuse(field, &format!("groups are read {MAX_DEPTH} deep")));
-        }
-        let is_group = part.part.trim_start().starts_with('{')
-            && part.read::<MaybeGroup>(field)?.group.is_some();
-        if !is_group {
-            let fields: SurfaceFields = part.read_object(field)?;
-            let built = fields
-                .build(self.images)
-                .map_err(|reason| part.refuse(field, &reason))?;
-            self.vertices += built.shape().vertices();
-            at_most("vertices", self.vertices, self.limits.vertices)
-                .map_err(|error| part.refuse(field, &error))?;
-            return Ok(Member::Surface(built));
-        }
-        let fields: GroupFields<'a> = part.read_object(field)?;
-        let inner = |raw: &RawValue| Part {
-            text: self.text,
-            part: part_of(self.text, raw),
-        };
-        let mut group = Group::new(fields.elevation).map_err(|error| part.refuse(field, &error))?;
-        if let Some(clip) = fields.clip.map(inner) {
-            let field = format!("{field}.clip");
-            let shape = clip.read_object::<SurfaceFields>(&field)?.build_clip();
-            group = group.with_clip(shape.map_err(|reason| clip.refuse(&field, &reason))?);
-        }
-        let parts: Vec<Part<'a>> = fields.group.into_iter().map(inner).collect();
-        for (index, part) in parts.into_iter().enumerate() {
-            match self.read(part, &format!("{field}.group[{index}]"), depth + 1)? {
-                Member::Surface(surface) => group.push(surface),
-                Member::Group(inner) => group.push_group(inner),
-            }
-        }
-        Ok(Member::Group(group))
-    }
-}
-
-/// A piece of a file's text.
-#[derive(Clone, Copy)]
-struct Part<'a> {
-    text: &'a str,
-    part: &'a str,
-}
-
-/// The piece of `text` that a raw value was read from.
-fn part_of<'a>(text: &'a str, raw: &RawValue) -> &'a str {
-    let offset = raw.get().as_ptr() as usize - text.as_ptr() as usize;
-    &text[offset..offset + raw.get().len()]
-}
-
-impl<'a> Part<'a> {
-    /// An error at the part's beginning.
-    fn refuse(&self, field: &str, reason: &dyn core::fmt::Display) -> Error {
-        self.refuse_at(0, field.to_owned(), reason.to_string())
-    }
-
-    fn refuse_at(&self, offset: usize, field: String, reason: String) -> Error {
-        let place = self.part.as_ptr() as usize - self.text.as_ptr() as usize + offset;
-        let before = &self.text.as_bytes()[..place];
-        let line_start = before
-            .iter()
-            .rposition(|&byte| byte == b'\n')
-            .map_or(0, |newline| newline + 1);
-        Error::Scene {
-            line: before.iter().filter(|&&byte| byte == b'\n').count() + 1,
-            column: before.len() - line_start + 1,
-            field,
-            reason,
-        }
-    }
-
-    /// Reads an object: a list of values without their names would be taken for one.
-    fn read_object<T: Deserialize<'a>>(&self, field: &str) -> Result<T> {
-        if self.part.trim_start().starts_with('[') {
-            return Err(self.refuse(field, &"give an object with named fields, not a list"));
-        }
-        self.read(field)
-    }
-
-    /// Reads one of some names.
-    fn read_name<T: Copy>(&self, field: &str, names: &[(&str, T)]) -> Result<T> {
-        let value: String = self.read(field)?;
-        let known = names.iter().find(|(name, _)| *name == value);
-        known.map(|(_, meant)| *meant).ok_or_else(|| {
-            let list: Vec<&str> = names.iter().map(|(name, _)| *name).collect();
-            let reason = format!("{value:?} is unknown: give {}", list.join(" or "));
-            self.refuse(field, &reason)
-        })
-    }
-
-    fn read<T: Deserialize<'a>>(&self, field: &str) -> Result<T> {
-        let mut reader = serde_json::Deserializer::from_str(self.part);
-        let value = serde_path_to_error::deserialize(&mut reader).map_err(|error| {
-            let path = error.path().to_string();
-            // What was read of a field without a name as yet has a question mark for one.
-            let field = match path.trim_end_matches(['?', '.']) {
-                "" => field.to_owned(),
-                path => format!("{field}.{path}"),
-            };
-            self.json_error(error.inner(), field)
-        })?;
-        reader
-            .end()
-            .map_err(|error| self.json_error(&error, field.to_owned()))?;
-        Ok(value)
-    }
-
-    fn json_error(&self, error: &serde_json::Error, field: String) -> Error {
-        // serde_json counts lines from 1 and columns in bytes, and ends its message with both.
-        let lines = self.part.split_inclusive('\n');
-        let line_start: usize = lines
-            .take(error.line().saturating_sub(1))
-            .map(str::len)
-            .sum();
-        let offset = (line_start + error.column().saturating_sub(1)).min(self.part.len());
-        let message = error.to_string();
-        let reason = message
-            .rsplit_once(" at line ")
-            .map_or(message.as_str(), |(reason, _)| reason);
-        let reason = match reason {
-            "trailing characters" => "more follows: remove it".to_owned(),
-            _ => reason.replace("EOF while parsing", "the text ends within"),
-        };
-        // Types have names that no file shows.
-        let reason = match reason.rsplit_once(", expected ") {
-            Some((before, expected)) => {
-                let kind = match expected {
-                    "f32" | "f64" => "a number",
-                    "u32" => "a whole number not below 0",
-                    _ if expected.starts_with("struct ") => "an object",
-                    other => other,
-                };
-                format!("{before}, expected {kind}")
-            }
-            None => reason,
-        };
-        self.refuse_at(offset, field, reason)
     }
 }
 

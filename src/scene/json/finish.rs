@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use serde::Deserialize;
 
+use super::Images;
+use super::optional::{object, some};
 use super::surface::{Outcome, text};
-use super::{Images, object, some};
 use crate::error;
 use crate::finish::detail::MOST_TURN;
 use crate::finish::{Bump, Environment, Finish, Frame, Material, Profile, Rim, ShadingModel, Tile};

@@ -6,9 +6,10 @@ use serde::Deserialize;
 #[cfg(not(feature = "finish"))]
 use serde::de::IgnoredAny;
 
+use super::Images;
 #[cfg(feature = "finish")]
 use super::finish::FinishFields;
-use super::{Images, object, some};
+use super::optional::{object, some};
 use crate::error::Error;
 use crate::path::{FillRule, Path};
 use crate::pose::Pose;
