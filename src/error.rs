@@ -209,7 +209,7 @@ pub enum Error {
     Scene {
         /// The line, from 1.
         line: usize,
-        /// The column, from 1.
+        /// The column, in characters, from 1.
         column: usize,
         /// The field, as in `surfaces[3].radius`.
         field: String,

@@ -332,4 +332,17 @@ mod tests {
         assert!(text.to_string().ends_with("scene: more follows: remove it"));
         assert!(Scene::from_json(&format!("\u{feff}{whole}")).is_ok());
     }
+
+    #[test]
+    fn columns_count_characters() {
+        let column = |surface: &str| match scene(surface) {
+            Err(Error::Scene { column, .. }) => column,
+            other => panic!("{surface}: {other:?}"),
+        };
+        let of_name = |name: &str| column(&format!(r#"{{"name":"{name}","cx":true}}"#));
+        assert_eq!(of_name("the"), of_name("thé"));
+        assert_eq!(of_name("the"), of_name("th\u{1f375}"));
+        // What is wrong with an escape is told by the byte, here the first of two.
+        assert_eq!(column(r#"{"name":"é\u00é0"}"#), 15);
+    }
 }

@@ -44,9 +44,12 @@ impl<'a> Part<'a> {
             .iter()
             .rposition(|&byte| byte == b'\n')
             .map_or(0, |newline| newline + 1);
+        // serde_json counts bytes, and may stop within a character.
+        let line = self.text[line_start..].char_indices();
+        let passed = line.take_while(|(at, char)| line_start + at + char.len_utf8() <= place);
         Error::Scene {
             line: before.iter().filter(|&&byte| byte == b'\n').count() + 1,
-            column: before.len() - line_start + 1,
+            column: passed.count() + 1,
             field,
             reason,
         }
