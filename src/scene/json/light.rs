@@ -44,6 +44,17 @@ impl LightFields {
                 );
             }
         };
-        light.map_err(|error| error.to_string())
+        light.map_err(|error| {
+            let names = [
+                ["light.x", "x"],
+                ["light.y", "y"],
+                ["light.z", "z"],
+                ["light.radius", "radius"],
+                ["light.offset.x", "offset[0]"],
+                ["light.offset.y", "offset[1]"],
+                ["light.spread", "spread"],
+            ];
+            error.renamed(&names).to_string()
+        })
     }
 }

@@ -73,7 +73,10 @@ impl<'i> Members<'i> {
             return Ok(Member::Surface(built));
         }
         let fields: GroupFields<'_> = part.read_object(field)?;
-        let mut group = Group::new(fields.elevation).map_err(|error| part.refuse(field, &error))?;
+        let mut group = Group::new(fields.elevation).map_err(|error| {
+            let error = error.renamed(&[["group elevation", "elevation"]]);
+            part.refuse(field, &error)
+        })?;
         if let Some(clip) = fields.clip.map(|raw| part.within(raw)) {
             let field = format!("{field}.clip");
             let shape = clip.read_object::<SurfaceFields>(&field)?.build_clip();

@@ -271,6 +271,15 @@ impl SurfaceFields {
             _ if self.radii.is_some() => "radii",
             _ => "radius",
         };
+        let [coordinate, width, height] = match (&self.points, &self.rings) {
+            (Some(_), _) => [
+                "coordinate of points",
+                "width of points",
+                "height of points",
+            ],
+            (None, Some(_)) => ["coordinate of rings", "width of rings", "height of rings"],
+            (None, None) => ["coordinate of d", "width of d", "height of d"],
+        };
         text(error.renamed(&[
             ["width", "w"],
             ["height", "h"],
@@ -279,6 +288,11 @@ impl SurfaceFields {
             ["center.y", "cy"],
             ["radii.x", "rx"],
             ["radii.y", "ry"],
+            ["path", coordinate],
+            ["path width", width],
+            ["path height", height],
+            ["path arc", "arc of d"],
+            ["path arc rotation", "rotation of an arc of d"],
             [
                 "elevation",
                 if self.corners.is_some() {
@@ -350,7 +364,7 @@ impl StrokeFields {
             Some("round") => LineCap::Round,
             Some(other) => {
                 return Err(format!(
-                    "cap {other:?} is unknown: give butt, square or round"
+                    "stroke.cap {other:?} is unknown: give butt, square or round"
                 ));
             }
         };
@@ -360,17 +374,20 @@ impl StrokeFields {
             Some("bevel") => LineJoin::Bevel,
             Some(other) => {
                 return Err(format!(
-                    "join {other:?} is unknown: give miter, round or bevel"
+                    "stroke.join {other:?} is unknown: give miter, round or bevel"
                 ));
             }
         };
-        let stroke = Stroke::new(self.width)
-            .map_err(text)?
-            .with_cap(cap)
-            .with_join(join);
-        match self.miter_limit {
-            Some(limit) => stroke.with_miter_limit(limit).map_err(text),
+        let stroke = Stroke::new(self.width).and_then(|stroke| match self.miter_limit {
+            Some(limit) => stroke.with_miter_limit(limit),
             None => Ok(stroke),
-        }
+        });
+        let stroke = stroke.map_err(|error| {
+            text(error.renamed(&[
+                ["stroke width", "stroke.width"],
+                ["miter limit", "stroke.miter_limit"],
+            ]))
+        })?;
+        Ok(stroke.with_cap(cap).with_join(join))
     }
 }
