@@ -427,17 +427,22 @@ fn a_clip_makes_no_rim() {
 
 #[test]
 fn scenes_name_what_is_wrong_with_a_finish() {
+    let dot = || Image::from_rgba8([1, 1], vec![255; 4]).unwrap();
     let read = |finish: &str| {
-        Scene::from_json(&format!(
+        let text = format!(
             "{{\"canvas\":[9,9],\"light\":{{\"x\":5,\"y\":0,\"z\":60,\"radius\":8}},\"surfaces\":[\n\
              {{\"shape\":\"circle\",\"cx\":1,\"cy\":2,\"r\":3,\"elevation\":5,\"finish\":{finish}}}]}}"
-        ))
+        );
+        match finish.contains("dot.png") {
+            true => Scene::from_json_with_images(&text, &mut |_| Ok(dot())),
+            false => Scene::from_json(&text),
+        }
     };
     assert!(read(r#"{"rim":{"width":1,"height":1}}"#).is_ok());
     for (finish, message) in [
         (
             r#"{"rim":{"width":0,"height":1}}"#,
-            "surfaces[0]: rim.width is 0: give a number above 0",
+            "surfaces[0]: finish.rim.width is 0: give a number above 0",
         ),
         (
             r#"{"rim":{"width":1,"height":1,"profile":"cove"}}"#,
@@ -445,7 +450,27 @@ fn scenes_name_what_is_wrong_with_a_finish() {
         ),
         (
             r#"{"rim":{"width":1,"height":1,"steps":99}}"#,
-            "rim.steps is 99: give a number from 1 to 64",
+            "surfaces[0]: finish.rim.steps is 99: give a number from 1 to 64",
+        ),
+        (
+            r#"{"material":{"ambient":0,"diffuse":2,"specular":0,"shininess":1}}"#,
+            "surfaces[0]: finish.material.diffuse is 2: give a number from 0 to 1",
+        ),
+        (
+            r#"{"bump":{"image":"dot.png","tile":[1,1],"depth":1e9}}"#,
+            "surfaces[0]: finish.bump.depth is 1e9: give a number from",
+        ),
+        (
+            r#"{"frame":{"image":"dot.png","tile":[1,0],"depth":0,"degrees":0,"twist":0}}"#,
+            "surfaces[0]: finish.frame.tile[1] is 0: give a number above 0",
+        ),
+        (
+            r#"{"frame":{"image":"dot.png","tile":[1,1],"depth":0,"degrees":1e9,"twist":0}}"#,
+            "surfaces[0]: finish.frame.degrees is 1e9: give a number from",
+        ),
+        (
+            r#"{"environment":{"image":"dot.png","tile":[1,1],"height":1,"strength":2}}"#,
+            "surfaces[0]: finish.environment.strength is 2: give a number from 0 to 1",
         ),
         (
             r#"{"shading":"toon"}"#,

@@ -7,7 +7,7 @@ use serde::Deserialize;
 use super::Images;
 use super::optional::{object, some};
 use super::surface::{Outcome, text};
-use crate::error;
+use crate::error::{self, Error};
 use crate::finish::detail::MOST_TURN;
 use crate::finish::{Bump, Environment, Finish, Frame, Material, Profile, Rim, ShadingModel, Tile};
 
@@ -99,14 +99,19 @@ impl FinishFields {
         if let Some(material) = self.material {
             finish = finish.with_material(material.build()?);
         }
-        let mut tile =
-            |name: &str, size: [f32; 2]| Tile::new(Arc::new(images(name)?), size).map_err(text);
+        let mut tile = |name: &str, size: [f32; 2], [width, height]: [&'static str; 2]| {
+            Tile::new(Arc::new(images(name)?), size).map_err(|error| {
+                text(error.renamed(&[["tile.width", width], ["tile.height", height]]))
+            })
+        };
         if let Some(of) = self.texture {
-            finish = finish.with_texture(tile(&of.image, of.tile)?);
+            let sides = ["finish.texture.tile[0]", "finish.texture.tile[1]"];
+            finish = finish.with_texture(tile(&of.image, of.tile, sides)?);
         }
         if let Some(of) = self.bump {
-            let bump = Bump::new(tile(&of.image, of.tile)?, of.depth);
-            finish = finish.with_bump(bump.map_err(text)?);
+            let sides = ["finish.bump.tile[0]", "finish.bump.tile[1]"];
+            let bump = Bump::new(tile(&of.image, of.tile, sides)?, of.depth);
+            finish = finish.with_bump(bump.map_err(named)?);
         }
         if let Some(of) = self.frame {
             let turn = |field, degrees: f32| {
@@ -114,18 +119,42 @@ impl FinishFields {
                 error::within(field, f64::from(degrees), -most, most).map_err(text)?;
                 Ok::<_, String>(degrees.to_radians())
             };
-            let angle = turn("frame.degrees", of.degrees)?;
-            let twist = turn("frame.twist", of.twist)?;
-            let frame = Frame::new(tile(&of.image, of.tile)?, of.depth, angle, twist);
-            finish = finish.with_frame(frame.map_err(text)?);
+            let angle = turn("finish.frame.degrees", of.degrees)?;
+            let twist = turn("finish.frame.twist", of.twist)?;
+            let sides = ["finish.frame.tile[0]", "finish.frame.tile[1]"];
+            let image = tile(&of.image, of.tile, sides)?;
+            let frame = Frame::new(image, of.depth, angle, twist);
+            finish = finish.with_frame(frame.map_err(named)?);
         }
         if let Some(of) = self.environment {
-            let image = tile(&of.image, of.tile)?;
+            let sides = ["finish.environment.tile[0]", "finish.environment.tile[1]"];
+            let image = tile(&of.image, of.tile, sides)?;
             let environment = Environment::new(image, of.height, of.strength);
-            finish = finish.with_environment(environment.map_err(text)?);
+            finish = finish.with_environment(environment.map_err(named)?);
         }
         Ok(finish)
     }
+}
+
+/// What is wrong, by the names that fields have in scenes.
+fn named(error: Error) -> String {
+    text(error.renamed(&[
+        ["rim.width", "finish.rim.width"],
+        ["rim.height", "finish.rim.height"],
+        ["rim.steps", "finish.rim.steps"],
+        ["finish.ambient", "finish.material.ambient"],
+        ["finish.diffuse", "finish.material.diffuse"],
+        ["finish.specular", "finish.material.specular"],
+        ["finish.shininess", "finish.material.shininess"],
+        ["finish.attenuation", "sum of finish.material.attenuation"],
+        ["a0", "finish.material.attenuation[0]"],
+        ["a1", "finish.material.attenuation[1]"],
+        ["a2", "finish.material.attenuation[2]"],
+        ["bump.depth", "finish.bump.depth"],
+        ["frame.depth", "finish.frame.depth"],
+        ["environment.height", "finish.environment.height"],
+        ["environment.strength", "finish.environment.strength"],
+    ]))
 }
 
 fn shading(name: &str) -> Outcome<ShadingModel> {
@@ -153,11 +182,12 @@ impl RimFields {
                 ));
             }
         };
-        let rim = Rim::new(self.width, self.height, profile).map_err(text)?;
-        match self.steps {
-            Some(steps) => rim.with_steps(steps).map_err(text),
+        let rim = Rim::new(self.width, self.height, profile);
+        let rim = rim.and_then(|rim| match self.steps {
+            Some(steps) => rim.with_steps(steps),
             None => Ok(rim),
-        }
+        });
+        rim.map_err(named)
     }
 }
 
@@ -170,17 +200,6 @@ impl MaterialFields {
                 Some(attenuation) => material.with_attenuation(attenuation),
                 None => Ok(material),
             });
-        material.map_err(|error| {
-            text(error.renamed(&[
-                ["finish.ambient", "finish.material.ambient"],
-                ["finish.diffuse", "finish.material.diffuse"],
-                ["finish.specular", "finish.material.specular"],
-                ["finish.shininess", "finish.material.shininess"],
-                ["finish.attenuation", "sum of finish.material.attenuation"],
-                ["a0", "finish.material.attenuation[0]"],
-                ["a1", "finish.material.attenuation[1]"],
-                ["a2", "finish.material.attenuation[2]"],
-            ]))
-        })
+        material.map_err(named)
     }
 }
