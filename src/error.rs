@@ -231,6 +231,24 @@ impl Error {
         }
         self
     }
+
+    /// Whether it is an elevation that was refused.
+    pub(crate) fn is_of_elevation(&self) -> bool {
+        matches!(
+            self,
+            Self::CasterNotBelowLight { .. }
+                | Self::CasterBelowReceiver { .. }
+                | Self::ShadowTooLarge { .. }
+                | Self::NotFinite {
+                    field: "elevation",
+                    ..
+                }
+                | Self::OutOfRange {
+                    field: "elevation",
+                    ..
+                }
+        )
+    }
 }
 
 /// A number as its user wrote it: most were given as `f32`, and their doubles end in digits that nobody wrote.

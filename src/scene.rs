@@ -139,7 +139,7 @@ impl Scene {
     /// As [`Scene::push`] and [`Surface::clipped`], and groups nested too deep.
     pub fn push_group(&mut self, group: &Group) -> Result<()> {
         let before = self.surfaces.len();
-        let pushed = group.flatten(0, 0.0, &mut Vec::new(), &mut |surface| self.push(surface));
+        let pushed = group.flatten(None, &mut |surface| self.push(surface));
         if pushed.is_err() {
             self.surfaces.truncate(before);
         }

@@ -1,11 +1,12 @@
 //! Groups: surfaces that rise together and are clipped together.
 
 use super::Surface;
-use crate::error::{self, Error, Result};
+use crate::error::{self, Result};
+use crate::limits::at_most;
 use crate::shape::Shape;
 
 /// Groups may not be nested deeper than this.
-pub(super) const MAX_DEPTH: usize = 64;
+const MAX_DEPTH: usize = 64;
 
 /// Surfaces, and groups of them, that lie on a plane of their own: a member's elevation is over the group's, which is over that
 /// of the group around it. A clip cuts away what of the members is outside: a list that scrolls behind its header casts no
@@ -65,43 +66,68 @@ impl Group {
         self.members.push(Member::Group(group));
     }
 
-    /// Gives `take` all surfaces that are left of the group, raised by all groups that they are in.
+    /// Gives `take` all surfaces that are left of the group in those `around` it.
     pub(super) fn flatten(
         &self,
-        depth: usize,
-        height: f32,
-        clips: &mut Vec<Shape>,
+        around: Option<&Nest<'_>>,
         take: &mut impl FnMut(Surface) -> Result<()>,
     ) -> Result<()> {
-        if depth >= MAX_DEPTH {
-            return Err(Error::TooMany {
-                field: "groups within groups",
-                count: depth + 1,
-                limit: MAX_DEPTH,
-            });
-        }
-        let height = height + self.elevation;
-        clips.extend(self.clip.clone());
+        let nest = Nest::new(self, around)?;
         for member in &self.members {
             match member {
-                Member::Group(group) => group.flatten(depth + 1, height, clips, take)?,
+                Member::Group(group) => group.flatten(Some(&nest), take)?,
                 Member::Surface(surface) => {
-                    let mut left = Some(surface.clone().raised(height));
-                    for clip in &*clips {
-                        left = match left {
-                            Some(surface) => surface.clipped(clip)?,
-                            None => None,
-                        };
-                    }
-                    if let Some(surface) = left {
-                        take(surface)?;
+                    if let Some(left) = nest.place(surface.clone())? {
+                        take(left)?;
                     }
                 }
             }
         }
-        if self.clip.is_some() {
-            clips.pop();
-        }
         Ok(())
+    }
+}
+
+/// A group in the groups around it.
+pub(super) struct Nest<'a> {
+    around: Option<&'a Self>,
+    clip: Option<&'a Shape>,
+    depth: usize,
+    height: f32,
+}
+
+impl<'a> Nest<'a> {
+    /// # Errors
+    /// Groups nested too deep.
+    pub(super) fn new(group: &'a Group, around: Option<&'a Self>) -> Result<Self> {
+        let (outer, height) = around.map_or((0, 0.0), |around| (around.depth, around.height));
+        at_most("groups within groups", outer + 1, MAX_DEPTH)?;
+        Ok(Self {
+            around,
+            clip: group.clip.as_ref(),
+            depth: outer + 1,
+            height: height + group.elevation,
+        })
+    }
+
+    /// By how much all groups raise a member, scene units.
+    #[cfg(feature = "scene")]
+    pub(super) fn height(&self) -> f32 {
+        self.height
+    }
+
+    /// What is left of a member, raised by all groups.
+    pub(super) fn place(&self, member: Surface) -> Result<Option<Surface>> {
+        self.clipped(member.raised(self.height))
+    }
+
+    fn clipped(&self, surface: Surface) -> Result<Option<Surface>> {
+        let surface = match self.around {
+            Some(around) => around.clipped(surface)?,
+            None => Some(surface),
+        };
+        match (surface, self.clip) {
+            (Some(surface), Some(clip)) => surface.clipped(clip),
+            (surface, _) => Ok(surface),
+        }
     }
 }

@@ -12,11 +12,11 @@ use serde::Deserialize;
 use serde_json::value::RawValue;
 
 use self::light::LightFields;
-use self::members::{Member, Members};
+use self::members::Members;
 use self::optional::some;
 use self::part::Part;
 use super::{Overlap, Scene};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::image::Image;
 use crate::limits::{Limits, at_most};
 use crate::tone::{Blending, Color, Tone};
@@ -209,14 +209,9 @@ impl Scene {
             .check(&scene)
             .and_then(|()| at_most("surfaces", fields.surfaces.len(), limits.surfaces))
             .map_err(|error| whole.refuse("scene", &error))?;
-        let mut members = Members::new(limits, images);
+        let mut members = Members::new(&mut scene, limits, images);
         for (index, raw) in fields.surfaces.into_iter().enumerate() {
-            let field = format!("surfaces[{index}]");
-            let refuse = |error: Error| part(raw).refuse(&field, &error);
-            match members.read(part(raw), &field, 0)? {
-                Member::Surface(surface) => scene.push(surface).map_err(refuse)?,
-                Member::Group(group) => scene.push_group(&group).map_err(refuse)?,
-            }
+            members.read(part(raw), &format!("surfaces[{index}]"), None)?;
         }
         Ok(scene)
     }
@@ -225,6 +220,7 @@ impl Scene {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::error::Error;
     use crate::shape::Shape;
 
     fn scene(surface: &str) -> Result<Scene> {
@@ -344,5 +340,48 @@ mod tests {
         assert_eq!(of_name("the"), of_name("th\u{1f375}"));
         // What is wrong with an escape is told by the byte, here the first of two.
         assert_eq!(column(r#"{"name":"é\u00é0"}"#), 15);
+    }
+
+    #[test]
+    fn members_of_groups_are_refused_where_they_are() {
+        let group = |elevation: f32, members: &str| {
+            format!(
+                r#"{{"group":[{members}],"elevation":{elevation},"clip":{{"shape":"circle","cx":5,"cy":5,"r":9}}}}"#
+            )
+        };
+        let card = r#"{"shape":"rrect","x":1,"y":2,"w":3,"h":4,"elevation":"#;
+        let cases = [
+            (
+                group(10.0, &format!("{card}580}},\n{card}590}}")),
+                "line 5, column 1, surfaces[0].group[1]: elevation 600 is not below the light at z = 600: lower the caster or raise the light; its groups raise it by 10",
+            ),
+            (
+                group(-2.0, &group(-3.0, &format!("\n {card}4}}"))),
+                "line 5, column 2, surfaces[0].group[0].group[0]: elevation -1 is below the receiver at 0: a caster must be at or above what it shades; its groups raise it by -5",
+            ),
+            (
+                group(10.0, &format!("\n{card}5,\"opacity\":2}}")),
+                "line 5, column 1, surfaces[0].group[0]: opacity is 2: give a number from 0 to 1",
+            ),
+            (
+                group(
+                    10.0,
+                    &format!(r#"{card}5,"tilt":{{"pivot":[1,2],"axis":[1,0],"degrees":9}}}}"#),
+                ),
+                "line 4, column 11, surfaces[0].group[0]: a tilted surface and an image are not clipped: put them outside of the clipped group",
+            ),
+        ];
+        for (members, message) in cases {
+            assert_eq!(scene(&members).unwrap_err().to_string(), message);
+        }
+        let nested = |depth| (0..depth).fold(format!("{card}5}}"), |inner, _| group(0.5, &inner));
+        assert_eq!(scene(&nested(64)).unwrap().surfaces()[0].elevation(), 37.0);
+        let text = scene(&nested(65)).unwrap_err().to_string();
+        assert!(
+            text.ends_with(
+                ": 65 groups within groups, over the limit of 64: simplify or split what has them"
+            ),
+            "{text}"
+        );
     }
 }

@@ -10,8 +10,8 @@ use super::part::Part;
 use super::surface::SurfaceFields;
 use crate::error::Result;
 use crate::limits::{Limits, at_most};
-use crate::scene::group::MAX_DEPTH;
-use crate::scene::{Group, Surface};
+use crate::scene::group::Nest;
+use crate::scene::{Group, Scene};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -30,8 +30,10 @@ struct MaybeGroup {
     group: Option<IgnoredAny>,
 }
 
-/// Reads surfaces and groups of a scene.
+/// Reads surfaces and groups, and puts what is left of them on a scene: what is wrong with one is told where it is, not where
+/// its group is.
 pub(super) struct Members<'i> {
+    scene: &'i mut Scene,
     limits: &'i Limits,
     /// How many there were, and the vertices of all.
     count: usize,
@@ -39,14 +41,14 @@ pub(super) struct Members<'i> {
     images: &'i mut Images<'i>,
 }
 
-pub(super) enum Member {
-    Surface(Surface),
-    Group(Group),
-}
-
 impl<'i> Members<'i> {
-    pub(super) fn new(limits: &'i Limits, images: &'i mut Images<'i>) -> Self {
+    pub(super) fn new(
+        scene: &'i mut Scene,
+        limits: &'i Limits,
+        images: &'i mut Images<'i>,
+    ) -> Self {
         Self {
+            scene,
             limits,
             count: 0,
             vertices: 0,
@@ -54,24 +56,52 @@ impl<'i> Members<'i> {
         }
     }
 
-    pub(super) fn read(&mut self, part: Part<'_>, field: &str, depth: usize) -> Result<Member> {
+    /// Reads a surface or a group in those `around` it.
+    pub(super) fn read(
+        &mut self,
+        part: Part<'_>,
+        field: &str,
+        around: Option<&Nest<'_>>,
+    ) -> Result<()> {
         self.count += 1;
         at_most("surfaces", self.count, self.limits.surfaces)
             .map_err(|error| part.refuse(field, &error))?;
-        if depth > MAX_DEPTH {
-            return Err(part.refuse(field, &format!("groups are read {MAX_DEPTH} deep")));
+        if part.is_object() && part.read::<MaybeGroup>(field)?.group.is_some() {
+            self.read_group(part, field, around)
+        } else {
+            self.read_surface(part, field, around)
         }
-        let is_group = part.is_object() && part.read::<MaybeGroup>(field)?.group.is_some();
-        if !is_group {
-            let fields: SurfaceFields = part.read_object(field)?;
-            let built = fields
-                .build(self.images)
-                .map_err(|reason| part.refuse(field, &reason))?;
-            self.vertices += built.shape().vertices();
-            at_most("vertices", self.vertices, self.limits.vertices)
-                .map_err(|error| part.refuse(field, &error))?;
-            return Ok(Member::Surface(built));
-        }
+    }
+
+    fn read_surface(
+        &mut self,
+        part: Part<'_>,
+        field: &str,
+        around: Option<&Nest<'_>>,
+    ) -> Result<()> {
+        let fields: SurfaceFields = part.read_object(field)?;
+        let surface = fields
+            .build(self.images)
+            .map_err(|reason| part.refuse(field, &reason))?;
+        self.vertices += surface.shape().vertices();
+        at_most("vertices", self.vertices, self.limits.vertices)
+            .map_err(|error| part.refuse(field, &error))?;
+        let left = match around {
+            Some(nest) => nest.place(surface),
+            None => Ok(Some(surface)),
+        };
+        let pushed = left.and_then(|left| left.map_or(Ok(()), |left| self.scene.push(left)));
+        pushed.map_err(|error| match around {
+            // The elevation that is told is a sum, which no file shows.
+            Some(nest) if error.is_of_elevation() => {
+                let height = nest.height();
+                part.refuse(field, &format!("{error}; its groups raise it by {height}"))
+            }
+            _ => part.refuse(field, &error),
+        })
+    }
+
+    fn read_group(&mut self, part: Part<'_>, field: &str, around: Option<&Nest<'_>>) -> Result<()> {
         let fields: GroupFields<'_> = part.read_object(field)?;
         let mut group = Group::new(fields.elevation).map_err(|error| {
             let error = error.renamed(&[["group elevation", "elevation"]]);
@@ -82,13 +112,11 @@ impl<'i> Members<'i> {
             let shape = clip.read_object::<SurfaceFields>(&field)?.build_clip();
             group = group.with_clip(shape.map_err(|reason| clip.refuse(&field, &reason))?);
         }
+        let nest = Nest::new(&group, around).map_err(|error| part.refuse(field, &error))?;
         for (index, raw) in fields.group.into_iter().enumerate() {
             let field = format!("{field}.group[{index}]");
-            match self.read(part.within(raw), &field, depth + 1)? {
-                Member::Surface(surface) => group.push(surface),
-                Member::Group(inner) => group.push_group(inner),
-            }
+            self.read(part.within(raw), &field, Some(&nest))?;
         }
-        Ok(Member::Group(group))
+        Ok(())
     }
 }
