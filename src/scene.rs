@@ -36,6 +36,9 @@ pub struct Scene {
     tone: Tone,
     overlap: Overlap,
     surfaces: Vec<Surface>,
+    /// Of those that were read from a file.
+    #[cfg(feature = "scene")]
+    surface_fields: Vec<String>,
 }
 
 impl Scene {
@@ -56,6 +59,8 @@ impl Scene {
             tone: Tone::default(),
             overlap: Overlap::default(),
             surfaces: Vec::new(),
+            #[cfg(feature = "scene")]
+            surface_fields: Vec::new(),
         };
         scene.picture_size()?;
         Ok(scene)
@@ -207,6 +212,14 @@ impl Scene {
     #[must_use]
     pub fn surfaces(&self) -> &[Surface] {
         &self.surfaces
+    }
+
+    /// The fields of the scene file that the surfaces were read from, as errors name them: `surfaces[2].group[0]`. They come in
+    /// the surfaces' own order; surfaces that were pushed later have none.
+    #[cfg(feature = "scene")]
+    #[must_use]
+    pub fn surface_fields(&self) -> &[String] {
+        &self.surface_fields
     }
 
     /// The picture's pixels: the canvas times the scale, rounded up. A thousandth of a pixel is no pixel: scales like

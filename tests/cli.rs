@@ -479,9 +479,10 @@ mod mesh {
         let shadows = value["shadows"].as_array().unwrap();
         let numbered: Vec<_> = shadows
             .iter()
-            .map(|shadow| ["surface", "light"].map(|key| shadow[key].as_u64().unwrap()))
+            .map(|shadow| (shadow["surface"].as_str(), shadow["light"].as_u64()))
             .collect();
-        assert_eq!(numbered, [[0, 0], [0, 1]]);
+        let of_light = |light| (Some("surfaces[0]"), Some(light));
+        assert_eq!(numbered, [of_light(0), of_light(1)]);
         let pose = Pose::turned(40.0, [80.0, 80.0], [0.0, 1.0], 0.5).unwrap();
         let card = Shape::rect(50.0, 60.0, 60.0, 40.0).unwrap();
         for (shadow, x) in shadows.iter().zip([80.0, 180.0]) {
@@ -521,7 +522,7 @@ mod mesh {
             text.lines().count()
         );
         let names: Vec<&str> = names.iter().map(|words| words[1]).collect();
-        assert_eq!(names, ["round_button", "print", "surface2", "L"]);
+        assert_eq!(names, ["round_button", "print", "surfaces[2]", "L"]);
         let count =
             |key: &str| -> usize { shadows.iter().map(|shadow| length(&shadow[key])).sum() };
         assert_eq!(vertices.len(), count("positions"));
@@ -550,6 +551,45 @@ mod mesh {
 
 mod explain {
     use super::*;
+
+    #[test]
+    fn surfaces_are_those_of_the_file_as_in_meshes() {
+        // The first member is outside of the clip.
+        let folder = Folder::with_scene(
+            r#"{"canvas": [100, 100], "light": {"x": 50, "y": 0, "z": 600, "radius": 800}, "surfaces": [
+                {"group": [
+                    {"shape": "circle", "cx": 10, "cy": 10, "r": 5, "elevation": 4},
+                    {"shape": "circle", "cx": 50, "cy": 50, "r": 5, "elevation": 4},
+                    {"group": [{"shape": "circle", "cx": 70, "cy": 50, "r": 5, "elevation": 1}], "elevation": 2}
+                ], "elevation": 2, "clip": {"shape": "rrect", "x": 30, "y": 30, "w": 60, "h": 60}},
+                {"shape": "circle", "cx": 10, "cy": 10, "r": 5, "elevation": 6, "name": "last"}]}"#,
+        );
+        let text = folder.succeed("explain scene.json");
+        let heads: Vec<&str> = text.lines().filter(|line| !line.starts_with(' ')).collect();
+        let expected = [
+            "surfaces[0].group[1], elevation 6",
+            "surfaces[0].group[2].group[0], elevation 5",
+            r#"surfaces[1] "last", elevation 6"#,
+        ];
+        assert_eq!(heads, expected);
+        folder.succeed("mesh scene.json -o out.json");
+        let value: Value = serde_json::from_str(&folder.text("out.json")).unwrap();
+        let shadows = value["shadows"].as_array().unwrap();
+        let fields: Vec<_> = shadows.iter().map(|shadow| &shadow["surface"]).collect();
+        let expected = [
+            "surfaces[0].group[1]",
+            "surfaces[0].group[2].group[0]",
+            "surfaces[1]",
+        ];
+        assert_eq!(fields, expected);
+        folder.succeed("mesh scene.json -o out.obj");
+        let text = folder.text("out.obj");
+        let names: Vec<&str> = text
+            .lines()
+            .filter_map(|line| line.strip_prefix("o "))
+            .collect();
+        assert_eq!(names, [expected[0], expected[1], "last"]);
+    }
 
     #[test]
     fn tilted_surfaces_and_images_are_told_apart_under_each_light() {

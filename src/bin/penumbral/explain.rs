@@ -14,17 +14,13 @@ pub(crate) fn run(path: &Path) -> Result<(), Failure> {
     let lights: Vec<(Light, f32)> = scene.lights().collect();
     let mut text = String::new();
     // Writing to a string cannot fail.
-    for (index, surface) in scene.surfaces().iter().enumerate() {
+    for (surface, field) in scene.surfaces().iter().zip(scene.surface_fields()) {
         for (number, (light, key)) in lights.iter().enumerate() {
             let name = surface
                 .name()
                 .map(|name| format!(" {name:?}"))
                 .unwrap_or_default();
-            let _ = write!(
-                text,
-                "surfaces[{index}]{name}, elevation {}",
-                surface.elevation()
-            );
+            let _ = write!(text, "{field}{name}, elevation {}", surface.elevation());
             if lights.len() > 1 {
                 let _ = write!(text, ", light {number}");
             }

@@ -7,9 +7,10 @@ use serde_json::json;
 
 use crate::{Failure, extension, output, read_scene};
 
-/// The mesh of a surface's shadow under a light, by their numbers in the scene.
-struct Made {
-    surface: usize,
+/// The mesh of a surface's shadow under a light, by the surface's field in the file and the light's number.
+struct Made<'a> {
+    surface: &'a Surface,
+    field: &'a str,
     light: usize,
     mesh: ShadowMesh,
 }
@@ -20,11 +21,13 @@ pub(crate) fn run(path: &Path, file: &Path, options: MeshOptions) -> Result<(), 
     let lights: Vec<Light> = scene.lights().map(|(light, _)| light).collect();
     let bar = output::progress(lights.len() * scene.surfaces().len(), "meshes");
     let mut made = Vec::with_capacity(lights.len() * scene.surfaces().len());
-    for (surface, casting) in scene.surfaces().iter().enumerate() {
+    let surfaces = || scene.surfaces().iter().zip(scene.surface_fields());
+    for (surface, field) in surfaces() {
         for (number, light) in lights.iter().enumerate() {
-            if let Some(mesh) = mesh(light, casting, options)? {
+            if let Some(mesh) = mesh(light, surface, options)? {
                 made.push(Made {
                     surface,
+                    field,
                     light: number,
                     mesh,
                 });
@@ -38,37 +41,32 @@ pub(crate) fn run(path: &Path, file: &Path, options: MeshOptions) -> Result<(), 
         "obj" => {
             let mut first = 0;
             let mut text = String::new();
-            for Made {
-                surface,
-                light,
-                mesh,
-            } in &made
-            {
-                let name = scene.surfaces()[*surface].name();
-                let name = name.map_or_else(|| format!("surface{surface}"), str::to_owned);
-                let name = match light {
-                    0 => name,
-                    _ => format!("{name}.light{light}"),
+            for made in &made {
+                let name = made.surface.name().unwrap_or(made.field);
+                let name = match made.light {
+                    0 => name.to_owned(),
+                    light => format!("{name}.light{light}"),
                 };
-                text.push_str(&mesh.to_obj(&name, first));
-                first += mesh.vertices().len();
+                text.push_str(&made.mesh.to_obj(&name, first));
+                first += made.mesh.vertices().len();
             }
             text
         }
         _ => meshes_to_svg(made.iter().map(|made| &made.mesh)),
     };
     output::write(file, text.as_bytes())?;
-    for (index, surface) in scene.surfaces().iter().enumerate() {
+    for (surface, field) in surfaces() {
         if surface.as_image().is_some() {
             output::complain(&format!(
-                "surfaces[{index}]: the shadow of an image has no triangles: it is left out"
+                "{field}: the shadow of an image has no triangles: it is left out"
             ));
         }
     }
-    for Made { surface, mesh, .. } in made.iter().filter(|made| !made.mesh.is_complete()) {
+    for made in made.iter().filter(|made| !made.mesh.is_complete()) {
         output::complain(&format!(
-            "surfaces[{surface}]: the mesh is not complete: it is up to {:.2} levels wrong",
-            mesh.error_levels().min(255.0)
+            "{}: the mesh is not complete: it is up to {:.2} levels wrong",
+            made.field,
+            made.mesh.error_levels().min(255.0)
         ));
     }
     Ok(())
@@ -95,26 +93,20 @@ fn mesh(
     Ok(Some(mesh.map_err(|error| error.to_string())?))
 }
 
-fn json_text(made: &[Made]) -> String {
+fn json_text(made: &[Made<'_>]) -> String {
     let shadows: Vec<_> = made
         .iter()
-        .map(
-            |Made {
-                 surface,
-                 light,
-                 mesh,
-             }| {
-                let vertices = mesh.vertices();
-                json!({
-                    "surface": surface,
-                    "light": light,
-                    "positions": vertices.iter().map(|vertex| vertex.position).collect::<Vec<_>>(),
-                    "densities": vertices.iter().map(|vertex| vertex.density).collect::<Vec<_>>(),
-                    "indices": mesh.indices(),
-                    "error_levels": mesh.error_levels(),
-                })
-            },
-        )
+        .map(|made| {
+            let vertices = made.mesh.vertices();
+            json!({
+                "surface": made.field,
+                "light": made.light,
+                "positions": vertices.iter().map(|vertex| vertex.position).collect::<Vec<_>>(),
+                "densities": vertices.iter().map(|vertex| vertex.density).collect::<Vec<_>>(),
+                "indices": made.mesh.indices(),
+                "error_levels": made.mesh.error_levels(),
+            })
+        })
         .collect();
     json!({ "shadows": shadows }).to_string()
 }

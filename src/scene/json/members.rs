@@ -90,7 +90,13 @@ impl<'i> Members<'i> {
             Some(nest) => nest.place(surface),
             None => Ok(Some(surface)),
         };
-        let pushed = left.and_then(|left| left.map_or(Ok(()), |left| self.scene.push(left)));
+        let pushed = left.and_then(|left| {
+            if let Some(left) = left {
+                self.scene.push(left)?;
+                self.scene.surface_fields.push(field.to_owned());
+            }
+            Ok(())
+        });
         pushed.map_err(|error| match around {
             // The elevation that is told is a sum, which no file shows.
             Some(nest) if error.is_of_elevation() => {
