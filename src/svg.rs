@@ -44,8 +44,7 @@ fn opacity(value: f64) -> String {
 
 /// An attribute for a colour, none for black, which is what SVG takes without.
 fn painted(attribute: &str, color: Color) -> String {
-    let Color { r, g, b, .. } = color;
-    match Color::rgb(r, g, b) {
+    match color.opaque() {
         Color::BLACK => String::new(),
         color => format!(" {attribute}=\"{color}\""),
     }

@@ -29,6 +29,11 @@ impl Color {
     pub const fn rgb(r: u8, g: u8, b: u8) -> Self {
         Self { r, g, b, a: 255 }
     }
+
+    /// The same without its alpha.
+    pub(crate) const fn opaque(self) -> Self {
+        Self::rgb(self.r, self.g, self.b)
+    }
 }
 
 /// Why a text is no colour.
@@ -61,9 +66,13 @@ impl FromStr for Color {
 }
 
 impl fmt::Display for Color {
-    /// Writes `#rrggbb`: opacity is written apart wherever colours are.
+    /// Writes what is read: `#rrggbb` for an opaque colour, `#rrggbbaa` for any other.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "#{:02x}{:02x}{:02x}", self.r, self.g, self.b)
+        write!(f, "#{:02x}{:02x}{:02x}", self.r, self.g, self.b)?;
+        match self.a {
+            255 => Ok(()),
+            a => write!(f, "{a:02x}"),
+        }
     }
 }
 
@@ -174,6 +183,23 @@ mod tests {
         );
         for bad in ["", "#", "#ff", "fff", "#ggg", "#fffff", "#ffffffff0", "red"] {
             assert!(bad.parse::<Color>().is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn colours_are_read_as_they_are_written() {
+        let translucent = |a| Color {
+            a,
+            ..Color::rgb(10, 20, 30)
+        };
+        for (color, text) in [
+            (Color::WHITE, "#ffffff"),
+            (translucent(254), "#0a141efe"),
+            (translucent(9), "#0a141e09"),
+            (translucent(0), "#0a141e00"),
+        ] {
+            assert_eq!(color.to_string(), text);
+            assert_eq!(text.parse(), Ok(color));
         }
     }
 }

@@ -5,13 +5,14 @@
 #[expect(dead_code, reason = "other tests take more of it")]
 mod common;
 
+use std::collections::BTreeSet;
 use std::env;
 use std::sync::Arc;
 
 use common::Random;
 use penumbral::{
     Blending, Bounds, Color, Error, FillRule, Group, Image, Light, Overlap, Path, Pose, Renderer,
-    Scene, Shape, Surface, Tone,
+    Scene, Shape, Surface, Tolerance, Tone,
 };
 use tiny_skia::Pixmap;
 
@@ -173,6 +174,26 @@ fn each_light_casts_its_own_shadow_in_the_tones_colour() {
             .push_light(Light::new([0.0, 0.0, 20.0], 1.0).unwrap(), 0.2)
             .is_err()
     );
+}
+
+#[test]
+fn svg_pictures_write_opacity_apart_from_colours() {
+    let translucent = |a| Color {
+        a,
+        ..Color::rgb(9, 20, 30)
+    };
+    let tone = Tone::new(0.3, 0.0).unwrap().with_color(translucent(16));
+    let mut scene = empty().with_tone(tone);
+    scene
+        .push(Surface::new(rect(40.0, 40.0, 50.0, 60.0), 6.0).with_fill(translucent(51)))
+        .unwrap();
+    let svg = scene.to_svg(Tolerance::ONE_LEVEL).unwrap();
+    let colors: BTreeSet<&str> = svg
+        .split('"')
+        .filter(|text| text.starts_with('#') && text.parse::<Color>().is_ok())
+        .collect();
+    assert_eq!(colors, BTreeSet::from(["#09141e", "#ffffff"]));
+    assert!(svg.contains("fill-opacity=\"0.2\""));
 }
 
 #[test]

@@ -16,7 +16,7 @@ use crate::scene::{Form, Scene, Surface};
 use crate::shadow::Shadow;
 use crate::svg::{Svg, number};
 use crate::tolerance::Tolerance;
-use crate::tone::{Blending, Color};
+use crate::tone::Blending;
 
 impl Scene {
     /// The scene as an SVG picture of the same size and the same look as the PNG: each shadow within `tolerance` of the
@@ -97,8 +97,8 @@ impl Writer<'_> {
         let data = self
             .svg
             .path_data(&surface.cover().polygons_within(0.1, pixel));
-        let Color { r, g, b, .. } = surface.fill();
-        let fill = Color::rgb(r, g, b);
+        // Its alpha is part of the weight.
+        let fill = surface.fill().opaque();
         let weight = number(f64::from(surface.weight()), 4);
         let level = if surface.receives() && self.stage.is_shaded(receiver)? {
             self.level(receiver)?
