@@ -155,10 +155,7 @@ fn methods(c: &mut Criterion) {
 /// One method over shapes, sizes and radii, as far as it is one of its own there and not too slow.
 fn blend_by(c: &mut Criterion, method: Option<Method>, shapes: &[(&str, Shape)]) {
     let name = method.map_or("auto".to_owned(), |method| method.to_string());
-    let options = PixelOptions {
-        method,
-        ..PixelOptions::default()
-    };
+    let options = PixelOptions::default().with_method(method);
     let mut group = c.benchmark_group(name);
     if method == Some(Method::Exact) {
         group.sample_size(10);
@@ -190,9 +187,11 @@ fn outputs(c: &mut Criterion) {
     let mut hidden = Hidden::new(&picture.grid);
     hidden.add(&card, &mut picture.scratch);
     let options = PixelOptions::default();
-    let (mut dither, mut seen) = (options, options);
-    (dither.dither, seen.hidden) = (true, Some(&hidden));
-    for (name, options) in [("plain", options), ("dithered", dither), ("hidden", seen)] {
+    for (name, options) in [
+        ("plain", options),
+        ("dithered", options.with_dither(true)),
+        ("hidden", options.with_hidden(&hidden)),
+    ] {
         let id = BenchmarkId::new("rgba8", name);
         picture.blend(&mut group, id, &options);
     }
@@ -312,10 +311,7 @@ fn cards(c: &mut Criterion) {
     group.bench_function("opaque", |b| {
         b.iter(|| {
             black_box(&shadows).hide_covered(&mut hidden, &mut scratch);
-            let options = PixelOptions {
-                hidden: Some(&hidden),
-                ..PixelOptions::default()
-            };
+            let options = PixelOptions::default().with_hidden(&hidden);
             shadows
                 .blend_rgba8(&mut canvas, &options, &mut scratch)
                 .unwrap();

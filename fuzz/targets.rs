@@ -186,10 +186,7 @@ fn compare(bytes: &mut Bytes<'_>, method: Option<Method>) {
     };
     let mut scratch = Scratch::new();
     let mut draw = |method| {
-        let options = PixelOptions {
-            method,
-            ..PixelOptions::default()
-        };
+        let options = PixelOptions::default().with_method(method);
         let mut densities = vec![0.0; (size[0] * size[1]) as usize];
         assert!(
             shadow
@@ -251,10 +248,7 @@ pub(crate) fn nine_patch(data: &[u8]) {
             .is_ok()
     );
     let mut exact = vec![0.0; 48 * 4];
-    let options = PixelOptions {
-        method: Some(Method::Exact),
-        ..PixelOptions::default()
-    };
+    let options = PixelOptions::default().with_method(Method::Exact);
     assert!(
         shadow
             .fill_f32(&grid, &mut exact, &options, &mut scratch)
@@ -361,11 +355,9 @@ pub(crate) fn cast(data: &[u8]) {
     if bytes.flag() {
         hidden.add(&shape, &mut scratch);
     }
-    let options = PixelOptions {
-        hidden: Some(&hidden),
-        dither: bytes.flag(),
-        ..PixelOptions::default()
-    };
+    let options = PixelOptions::default()
+        .with_hidden(&hidden)
+        .with_dither(bytes.flag());
     let mut mask = [0; 18];
     assert!(
         shadow
@@ -457,8 +449,10 @@ pub(crate) fn scene_json(data: &[u8]) {
     let Ok(text) = core::str::from_utf8(data) else {
         return;
     };
-    let mut limits = Limits::default();
-    (limits.pixels, limits.vertices, limits.surfaces) = (1 << 15, 200, 6);
+    let limits = Limits::default()
+        .with_pixels(1 << 15)
+        .with_vertices(200)
+        .with_surfaces(6);
     let Ok(scene) = Scene::from_json_within(text, &limits, &mut |_| Err(String::new())) else {
         return;
     };

@@ -14,6 +14,7 @@ pub(crate) mod frame;
 pub(crate) mod grid;
 pub(crate) mod lanes;
 pub(crate) mod nine_patch;
+mod options;
 pub(crate) mod quadrature;
 pub(crate) mod rounded;
 pub(crate) mod rows;
@@ -35,27 +36,13 @@ use crate::hidden::Hidden;
 use crate::plan::{self, Method};
 use crate::scratch::Scratch;
 use crate::shadow::Shadow;
-use crate::tolerance::Tolerance;
 
 pub(crate) use area::at_point;
 pub(crate) use buffer::clear;
+pub use options::PixelOptions;
 
 /// How far flattening may move the density of `exact`, in levels.
 pub(crate) const EXACT_SHARE: f64 = 0.02;
-
-/// How a shadow is drawn on pixels.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct PixelOptions<'a> {
-    /// How wrong a pixel may be, before it is rounded to 8 bits.
-    pub tolerance: Tolerance,
-    /// The method, or none to leave the choice to the plan.
-    pub method: Option<Method>,
-    /// Whether the last rounding to 8 bits is spread by an ordered pattern, so that a wide and faint penumbra shows no
-    /// bands: then it is wrong by up to one of its steps rather than half.
-    pub dither: bool,
-    /// Pixels that need not be drawn.
-    pub hidden: Option<&'a Hidden>,
-}
 
 /// Takes the densities that a method computes; those it is not given are 0. What it is given of a pixel more than once, by
 /// neighbouring parts of a shadow, adds up.
@@ -257,6 +244,7 @@ mod tests {
     use crate::path::{FillRule, Path};
     use crate::scratch;
     use crate::shape::Shape;
+    use crate::tolerance::Tolerance;
     use crate::tone::Color;
 
     #[test]
@@ -311,11 +299,9 @@ mod tests {
             let light = Light::directional([0.0, 0.0], radius).unwrap();
             let shadow = light.cast(shape, 1.0, 0.0).unwrap();
             for method in methods {
-                let options = PixelOptions {
-                    method,
-                    dither: true,
-                    ..PixelOptions::default()
-                };
+                let options = PixelOptions::default()
+                    .with_method(method)
+                    .with_dither(true);
                 let drawn = levels.iter().map(|level| {
                     let mut scratch = Scratch::at_level(*level);
                     let mut densities = vec![0.0; 125 * 121];

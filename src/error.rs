@@ -34,7 +34,7 @@ pub type Result<T, E = Error> = core::result::Result<T, E>;
 /// | [`ShadowTooLarge`](Error::ShadowTooLarge) | a cast from elevation 599.99994 under a light at z = 600 |
 /// | [`PictureSize`](Error::PictureSize) | `Grid::new([0.0, 0.0], [0, 5], 1.0)`, a canvas of a million units square |
 /// | [`BufferSize`](Error::BufferSize) | 99 bytes for a grid of 10 x 10, a pixmap of another size than its scene |
-/// | [`OtherGrid`](Error::OtherGrid) | [`PixelOptions::hidden`](crate::PixelOptions) that was made for another grid |
+/// | [`OtherGrid`](Error::OtherGrid) | [`PixelOptions::with_hidden`](crate::PixelOptions::with_hidden) that was made for another grid |
 /// | [`NotFlat`](Error::NotFlat) | [`Pose::of_corners`](crate::Pose::of_corners) with the elevations 5, 9, 14, 11 |
 /// | [`NotOpaque`](Error::NotOpaque) | a scene's background `#fafafa80` |
 /// | [`NotInSvg`](Error::NotInSvg) | `Scene::to_svg` of a scene with linear blending |

@@ -30,7 +30,7 @@ use crate::shape::{Cover, Shape};
 ///
 /// let mut hidden = Hidden::new(&grid);
 /// hidden.add(&card, &mut scratch);
-/// let options = PixelOptions { hidden: Some(&hidden), ..PixelOptions::default() };
+/// let options = PixelOptions::default().with_hidden(&hidden);
 /// let mut canvas = vec![255; 360 * 240 * 4];
 /// let paint = Paint::new(Color::BLACK, 0.19)?;
 /// shadow.blend_rgba8(&grid, &mut canvas, &paint, &options, &mut scratch)?;
@@ -105,7 +105,7 @@ impl Hidden {
     /// let grid = Grid::new([0.0, 0.0], [64, 64], 1.0)?;
     /// let mut hidden = Hidden::new(&grid);
     /// hidden.clip(0..20, 30..64);
-    /// let options = PixelOptions { hidden: Some(&hidden), ..PixelOptions::default() };
+    /// let options = PixelOptions::default().with_hidden(&hidden);
     /// let mut mask = vec![0; 64 * 64];
     /// shadow.fill_a8(&grid, &mut mask, &options, &mut Scratch::new())?;
     /// assert!(mask[40 * 64 + 10] > 0 && mask[40 * 64 + 30] == 0 && mask[20 * 64 + 10] == 0);

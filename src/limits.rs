@@ -16,13 +16,12 @@ use crate::scene::Scene;
 /// ```
 ///
 /// of which the picture itself is 4 n: it is drawn in bands of rows. That is measured, and twice what was found; edges may cross as often as half the square of their number, so whoever draws
-/// the scenes of strangers sets `vertices` to some thousands.
+/// the scenes of strangers sets [`with_vertices`](Self::with_vertices) to some thousands.
 ///
 /// ```
 /// use penumbral::{Limits, Scene};
 ///
-/// let mut limits = Limits::default();
-/// limits.surfaces = 100;
+/// let limits = Limits::default().with_surfaces(100);
 /// let scene = Scene::from_json_within(
 ///     r#"{"canvas": [60, 40], "light": {"x": 30, "y": 0, "z": 600, "radius": 800}, "surfaces": []}"#,
 ///     &limits,
@@ -31,16 +30,11 @@ use crate::scene::Scene;
 /// # Ok::<(), penumbral::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
 pub struct Limits {
-    /// Pixels of the picture: [`MAX_PIXELS`] unless less is set; more are never drawn.
-    pub pixels: u64,
-    /// Lines, curves and arcs of all surfaces together: [`MAX_SEGMENTS`], which no single path passes either.
-    pub vertices: usize,
-    /// Surfaces: 65,536.
-    pub surfaces: usize,
-    /// Bytes of a scene file: [`MAX_SCENE_LENGTH`].
-    pub scene_length: usize,
+    pub(crate) pixels: u64,
+    pub(crate) vertices: usize,
+    pub(crate) surfaces: usize,
+    pub(crate) scene_length: usize,
 }
 
 impl Default for Limits {
@@ -55,6 +49,35 @@ impl Default for Limits {
 }
 
 impl Limits {
+    /// With at most so many pixels in a picture: [`MAX_PIXELS`] otherwise, and never more.
+    #[must_use]
+    pub fn with_pixels(mut self, pixels: u64) -> Self {
+        self.pixels = pixels;
+        self
+    }
+
+    /// With at most so many lines, curves and arcs of all surfaces together: [`MAX_SEGMENTS`] otherwise, which no single path
+    /// passes either.
+    #[must_use]
+    pub fn with_vertices(mut self, vertices: usize) -> Self {
+        self.vertices = vertices;
+        self
+    }
+
+    /// With at most so many surfaces: 65,536 otherwise.
+    #[must_use]
+    pub fn with_surfaces(mut self, surfaces: usize) -> Self {
+        self.surfaces = surfaces;
+        self
+    }
+
+    /// With at most so many bytes in a scene file: [`MAX_SCENE_LENGTH`] otherwise.
+    #[must_use]
+    pub fn with_scene_length(mut self, scene_length: usize) -> Self {
+        self.scene_length = scene_length;
+        self
+    }
+
     /// Refuses a scene that asks for more.
     ///
     /// # Errors

@@ -220,11 +220,8 @@ impl NinePatch {
         let shadow = Shadow::project(&[shape], &Projection::in_place(radius));
         let grid = Grid::new([0.0, 0.0], size, 1.0)?;
         let mut mask = vec![0; size[0] as usize * size[1] as usize];
-        let options = PixelOptions {
-            // It is drawn once and used often.
-            method: Some(Method::Direct),
-            ..PixelOptions::default()
-        };
+        // It is drawn once and used often.
+        let options = PixelOptions::default().with_method(Method::Direct);
         shadow.fill_a8(&grid, &mut mask, &options, scratch)?;
         Ok(Self {
             mask,
@@ -456,10 +453,7 @@ mod tests {
                 .blend_rgba8(place, &grid, &mut pixels, &paint, &mut scratch)
                 .unwrap();
             let mut exact = vec![0.0; 180 * 160];
-            let options = PixelOptions {
-                method: Some(Method::Exact),
-                ..PixelOptions::default()
-            };
+            let options = PixelOptions::default().with_method(Method::Exact);
             shadow
                 .fill_f32(&grid, &mut exact, &options, &mut scratch)
                 .unwrap();

@@ -91,10 +91,7 @@ fn in_bands(
                 let hidden = options
                     .hidden
                     .map(|hidden| hidden.window(&band, [0, first as u32]));
-                let options = PixelOptions {
-                    hidden: hidden.as_ref(),
-                    ..*options
-                };
+                let options = options.with_hidden(hidden.as_ref());
                 *result = draw(&band, part, &options, scratch);
             });
         }
@@ -132,11 +129,9 @@ mod tests {
                 let mut hidden = Hidden::new(&grid);
                 hidden.add(&card, &mut scratch);
                 for hidden in [None, Some(&hidden)] {
-                    let options = PixelOptions {
-                        hidden,
-                        dither: true,
-                        ..PixelOptions::default()
-                    };
+                    let options = PixelOptions::default()
+                        .with_hidden(hidden)
+                        .with_dither(true);
                     let mut alone = vec![200; 4 * (157 * 130 + 150)];
                     shadow
                         .blend_rgba8(&grid, &mut alone, &paint, &options, &mut scratch)

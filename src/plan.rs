@@ -42,6 +42,7 @@ pub enum Target {
 
 /// A method and the reason for it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Choice {
     /// The method.
     pub method: Method,
@@ -51,6 +52,7 @@ pub struct Choice {
 
 /// A method that could draw a shadow, as far as can be told without drawing it.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Candidate {
     /// The method.
     pub method: Method,

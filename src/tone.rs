@@ -88,6 +88,7 @@ pub struct Tone {
 
 /// In what a shadow's colour and what is below are mixed, and a surface's edge with what is around it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub enum Blending {
     /// In sRGB's own numbers, as nearly all toolkits do.
     #[default]

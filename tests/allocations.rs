@@ -86,11 +86,9 @@ fn a_warm_drawing_takes_no_memory() {
                         if hides {
                             hidden.add_all(shapes.iter(), &mut scratch);
                         }
-                        let options = PixelOptions {
-                            method,
-                            hidden: Some(&hidden),
-                            ..PixelOptions::default()
-                        };
+                        let options = PixelOptions::default()
+                            .with_method(method)
+                            .with_hidden(&hidden);
                         shadow
                             .fill_a8(&grid, &mut mask, &options, &mut scratch)
                             .unwrap();

@@ -42,10 +42,7 @@ fn pixmap(width: u32) -> Pixmap {
 /// Draws onto so many bytes with pixels hidden on another grid, where there is one.
 fn drawn(length: usize, hidden: Option<Grid>) -> Result<(), Error> {
     let hidden = hidden.map(|grid| Hidden::new(&grid));
-    let options = PixelOptions {
-        hidden: hidden.as_ref(),
-        ..PixelOptions::default()
-    };
+    let options = PixelOptions::default().with_hidden(hidden.as_ref());
     let shadow = light().cast(&card(), 8.0, 0.0)?;
     shadow.fill_a8(&grid(), &mut vec![0; length], &options, &mut Scratch::new())
 }
@@ -53,10 +50,7 @@ fn drawn(length: usize, hidden: Option<Grid>) -> Result<(), Error> {
 /// Does something with pixels hidden on a grid of 10 x 10.
 fn hiding(act: impl Fn(&PixelOptions<'_>) -> Result<(), Error>) -> Result<(), Error> {
     let hidden = Hidden::new(&grid());
-    act(&PixelOptions {
-        hidden: Some(&hidden),
-        ..PixelOptions::default()
-    })
+    act(&PixelOptions::default().with_hidden(&hidden))
 }
 
 fn mapped(options: &PixelOptions<'_>) -> Result<(), Error> {
@@ -72,9 +66,7 @@ fn skipped(options: &PixelOptions<'_>) -> Result<(), Error> {
     plan::skip(&shadow, &grid, options, None).map(drop)
 }
 
-fn limited(set: impl Fn(&mut Limits)) -> Result<(), Error> {
-    let mut limits = Limits::default();
-    set(&mut limits);
+fn limited(limits: Limits) -> Result<(), Error> {
     Renderer::within(limits).render(&scene(), &mut pixmap(60))
 }
 
@@ -94,9 +86,9 @@ fn cases() -> Vec<(&'static str, Result<(), Error>, &'static str)> {
         ("NotPositive", Shape::polygon(&[line], FillRule::NonZero).map(drop), "path height is 0: give a number above 0"),
         ("EmptyPath", Shape::path(&Path::new(), FillRule::NonZero).map(drop), "path encloses nothing: give a contour of at least three points"),
         ("TooMany", Shape::polygon(&[many], FillRule::NonZero).map(drop), "1048577 polygon points, over the limit of 1048576: simplify or split what has them"),
-        ("TooMany", limited(|limits| limits.pixels = 1000), "2400 pixels, over the limit of 1000: simplify or split what has them"),
-        ("TooMany", limited(|limits| limits.vertices = 3), "4 vertices, over the limit of 3: simplify or split what has them"),
-        ("TooMany", limited(|limits| limits.surfaces = 0), "1 surfaces, over the limit of 0: simplify or split what has them"),
+        ("TooMany", limited(Limits::default().with_pixels(1000)), "2400 pixels, over the limit of 1000: simplify or split what has them"),
+        ("TooMany", limited(Limits::default().with_vertices(3)), "4 vertices, over the limit of 3: simplify or split what has them"),
+        ("TooMany", limited(Limits::default().with_surfaces(0)), "1 surfaces, over the limit of 0: simplify or split what has them"),
         ("PathData", Path::from_svg("M 0 0 L").map(drop), "SVG path data, character 8: the data end inside a segment"),
         ("CasterNotBelowLight", cast(600.0, 0.0), "elevation 600 is not below the light at z = 600: lower the caster or raise the light"),
         ("ReceiverNotBelowLight", light().cast_posed(&card(), &pose(), 600.0).map(drop), "receiver 600 is not below the light at z = 600: lower the receiver or raise the light"),

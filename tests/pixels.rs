@@ -37,11 +37,7 @@ fn all_keep_their_tolerance(case: fn(usize) -> Case, count: usize) {
         let case = case(index);
         let label = case.label(index);
         let mut draw = |method, tolerance| {
-            let options = PixelOptions {
-                method,
-                tolerance,
-                ..PixelOptions::default()
-            };
+            let options = PixelOptions::new(tolerance).with_method(method);
             densities(&case.shadow, &case.grid, &options, &mut scratch)
         };
         let exact = draw(Some(Method::Exact), Tolerance::ONE_LEVEL);
@@ -248,10 +244,7 @@ fn corners_nearly_as_round_as_the_disc_keep_their_tolerance() {
             let direct = densities(&shadow, &grid, &by(Some(Method::Direct)), &mut scratch);
             for levels in [0.5, 1.0, 2.0] {
                 let tolerance = Tolerance::levels(levels).unwrap();
-                let options = PixelOptions {
-                    tolerance,
-                    ..by(Some(Method::NinePatch))
-                };
+                let options = PixelOptions::new(tolerance).with_method(Method::NinePatch);
                 let tabled = densities(&shadow, &grid, &options, &mut scratch);
                 let error = worst_of(&direct, &tabled);
                 // `direct` is wrong by 0.05.
@@ -311,10 +304,7 @@ fn error_of_card(
     let grid = Grid::new([0.0, 0.0], size, 1.0).unwrap();
     let mut drawn = |method, levels| {
         let tolerance = Tolerance::levels(levels).unwrap();
-        let options = PixelOptions {
-            tolerance,
-            ..by(Some(method))
-        };
+        let options = PixelOptions::new(tolerance).with_method(method);
         densities(&shadow, &grid, &options, scratch)
     };
     let direct = drawn(Method::Direct, 0.0625);
@@ -363,10 +353,8 @@ fn corners_of_very_different_radii_keep_their_tolerance() {
         let grid = Grid::new([0.0, 0.0], [880, 680], 1.0).unwrap();
         let direct = densities(&shadow, &grid, &by(Some(Method::Direct)), &mut scratch);
         for levels in [1.0, 4.0] {
-            let options = PixelOptions {
-                tolerance: Tolerance::levels(levels).unwrap(),
-                ..by(Some(Method::NinePatch))
-            };
+            let options = PixelOptions::new(Tolerance::levels(levels).unwrap())
+                .with_method(Method::NinePatch);
             let drawn = densities(&shadow, &grid, &options, &mut scratch);
             let error = worst_of(&direct, &drawn);
             summary.add(
@@ -539,10 +527,7 @@ fn windows_show_the_same_bits(cases: impl Iterator<Item = (usize, Case)>) {
         let size = [grid.width() as usize, grid.height() as usize];
         let tolerance = Tolerance::levels(random.pick(&[0.25, 1.0, 1.0, 4.0])).unwrap();
         for method in METHODS {
-            let options = PixelOptions {
-                tolerance,
-                ..by(method)
-            };
+            let options = PixelOptions::new(tolerance).with_method(method);
             let all = bits(&densities(&case.shadow, grid, &options, &mut scratch));
             for _ in 0..4 {
                 let first = size.map(|size| random.below(size));
@@ -579,10 +564,7 @@ fn windows_show_the_same_bits(cases: impl Iterator<Item = (usize, Case)>) {
 fn hidden_pixels(hidden: &Hidden, scratch: &mut Scratch) -> Vec<bool> {
     let everywhere = Shape::rect(-1e4, -1e4, 2e4, 2e4).unwrap();
     let shadow = Light::flutter().cast(&everywhere, 1.0, 0.0).unwrap();
-    let options = PixelOptions {
-        hidden: Some(hidden),
-        ..PixelOptions::default()
-    };
+    let options = PixelOptions::default().with_hidden(hidden);
     let seen = densities(&shadow, hidden.grid(), &options, scratch);
     seen.iter().map(|density| *density == 0.0).collect()
 }
@@ -651,10 +633,7 @@ fn hidden_pixels_are_left_alone_and_others_keep_their_bits() {
         assert_covered(&is_hidden, &above, grid, &case.label(index), &mut scratch);
         for method in [None, Some(Method::Exact), Some(FORCED[index % 3])] {
             let options = by(method);
-            let seen = PixelOptions {
-                hidden: Some(&hidden),
-                ..options
-            };
+            let seen = options.with_hidden(&hidden);
             let all = densities(&case.shadow, grid, &options, &mut scratch);
             let parts = densities(&case.shadow, grid, &seen, &mut scratch);
             let mut canvas = vec![200; 4 * all.len()];
@@ -714,10 +693,7 @@ fn pixels_in_all_clips_keep_their_bits_and_nothing_is_drawn_elsewhere() {
             hidden.clip(columns.clone(), rows.clone());
         }
         let options = by([None, Some(FORCED[index % 3])][index % 2]);
-        let seen = PixelOptions {
-            hidden: Some(&hidden),
-            ..options
-        };
+        let seen = options.with_hidden(&hidden);
         let all = densities(&case.shadow, grid, &options, &mut scratch);
         let parts = densities(&case.shadow, grid, &seen, &mut scratch);
         let before: Vec<u8> = (0..4 * all.len())
@@ -760,10 +736,7 @@ fn rows_apart_hold_the_same_bits_and_nothing_between() {
         let (width, height) = (grid.width() as usize, grid.height() as usize);
         let stride = width + 5;
         let apart = grid.with_stride(stride).unwrap();
-        let options = PixelOptions {
-            dither: index % 2 == 0,
-            ..by(METHODS[index / 2 % 4])
-        };
+        let options = by(METHODS[index / 2 % 4]).with_dither(index % 2 == 0);
         // The last row ends with the grid.
         let length = stride * (height - 1) + width;
         let mut floats = vec![7.0; length];
@@ -823,10 +796,7 @@ fn what_was_drawn_before_changes_nothing() {
         hidden.add_all(case.shapes.iter(), scratch);
         METHODS.map(|method| {
             let options = by(method);
-            let seen = PixelOptions {
-                hidden: Some(&hidden),
-                ..options
-            };
+            let seen = options.with_hidden(&hidden);
             [options, seen]
                 .map(|options| bits(&densities(&case.shadow, &case.grid, &options, scratch)))
         })
@@ -854,10 +824,7 @@ fn bytes_are_densities_rounded() {
         let label = case.label(index);
         for method in [None, Some(FORCED[index % 3])] {
             for (dither, allowed) in [(false, 0.501), (true, 1.0)] {
-                let options = PixelOptions {
-                    dither,
-                    ..by(method)
-                };
+                let options = by(method).with_dither(dither);
                 let floats = densities(&case.shadow, &case.grid, &options, &mut scratch);
                 let mut bytes = vec![7; floats.len()];
                 case.shadow
@@ -922,10 +889,7 @@ fn slope(shift: f32) -> (Shadow, Grid) {
 #[test]
 fn dithered_bytes_are_densities_in_the_mean() {
     let mut scratch = Scratch::new();
-    let options = PixelOptions {
-        dither: true,
-        ..PixelOptions::default()
-    };
+    let options = PixelOptions::default().with_dither(true);
     let (mut sum, mut count) = (0.0, 0);
     for shift in 0_u8..16 {
         let (shadow, grid) = slope(f32::from(shift) / 16.0);
@@ -978,10 +942,7 @@ fn a_wide_and_faint_penumbra_shows_no_bands() {
         .map(|density| 255.0 * (1.0 - f64::from(*density) * f64::from(strength)))
         .collect();
     let [flat, dithered] = [false, true].map(|dither| {
-        let options = PixelOptions {
-            dither,
-            ..PixelOptions::default()
-        };
+        let options = PixelOptions::default().with_dither(dither);
         let mut canvas = vec![255; 4 * floats.len()];
         shadow
             .blend_rgba8(&grid, &mut canvas, &paint, &options, &mut Scratch::new())
@@ -1027,10 +988,7 @@ fn paint_is_blended_source_over() {
         let paint = Paint::new(color, strength).unwrap();
         let opacity = f64::from(strength) * f64::from(color.a) / 255.0;
         for dither in [false, true] {
-            let options = PixelOptions {
-                dither,
-                ..PixelOptions::default()
-            };
+            let options = PixelOptions::default().with_dither(dither);
             let floats = densities(&case.shadow, &case.grid, &options, &mut scratch);
             // Transparent, opaque and all between, premultiplied.
             let below: Vec<u8> = floats
@@ -1092,10 +1050,7 @@ fn what_does_not_fit_is_refused() {
     ];
     for other in others {
         let hidden = Hidden::new(&other);
-        let options = PixelOptions {
-            hidden: Some(&hidden),
-            ..PixelOptions::default()
-        };
+        let options = PixelOptions::default().with_hidden(&hidden);
         let results = [
             shadow.fill_f32(&grid, &mut vec![0.0; length], &options, &mut scratch),
             shadow.fill_a8(&grid, &mut vec![0; length], &options, &mut scratch),
@@ -1117,10 +1072,7 @@ fn what_does_not_fit_is_refused() {
     // Another stride has the same pixels.
     let apart = grid.with_stride(300).unwrap();
     let hidden = Hidden::new(&apart);
-    let options = PixelOptions {
-        hidden: Some(&hidden),
-        ..PixelOptions::default()
-    };
+    let options = PixelOptions::default().with_hidden(&hidden);
     shadow
         .fill_a8(&grid, &mut vec![0; length], &options, &mut scratch)
         .unwrap();
@@ -1172,10 +1124,7 @@ fn ends_of_thin_bars_keep_the_tolerance_of_averages() {
             let bar = Shape::rect(6.0 + phase(3), 6.0 + phase(5), 5.3, thin).unwrap();
             let shadow = light.cast(&bar, 1.0, 0.0).unwrap();
             let mut draw = |method| {
-                let options = PixelOptions {
-                    method: Some(method),
-                    ..PixelOptions::default()
-                };
+                let options = PixelOptions::default().with_method(method);
                 densities(&shadow, &grid, &options, &mut scratch)
             };
             let (exact, direct) = (draw(Method::Exact), draw(Method::Direct));
@@ -1210,10 +1159,7 @@ fn add_within(
 /// Densities of shapes on a grid of 100 x 100 pixels by the plan's choice within a tolerance.
 fn drawn_within(shadow: &Shadow, levels: f32, scratch: &mut Scratch) -> Vec<f32> {
     let grid = Grid::new([0.0, 0.0], [100, 100], 1.0).unwrap();
-    let options = PixelOptions {
-        tolerance: Tolerance::levels(levels).unwrap(),
-        ..PixelOptions::default()
-    };
+    let options = PixelOptions::new(Tolerance::levels(levels).unwrap());
     densities(shadow, &grid, &options, scratch)
 }
 
@@ -1262,11 +1208,7 @@ fn small_corners_without_a_penumbra_keep_the_finest_tolerance() {
         Scratch::new(),
     );
     let mut draw = |method, levels| {
-        let options = PixelOptions {
-            method,
-            tolerance: Tolerance::levels(levels).unwrap(),
-            ..PixelOptions::default()
-        };
+        let options = PixelOptions::new(Tolerance::levels(levels).unwrap()).with_method(method);
         densities(&shadow, &grid, &options, &mut scratch)
     };
     let exact = draw(Some(Method::Exact), 1.0);

@@ -84,10 +84,7 @@ fn points() -> Hash {
 fn paint() -> Hash {
     let (mut scratch, mut hash) = (Scratch::new(), Hash::new());
     let paint = Paint::new(Color::rgb(30, 60, 90), 0.6).unwrap();
-    let options = PixelOptions {
-        dither: true,
-        ..PixelOptions::default()
-    };
+    let options = PixelOptions::default().with_dither(true);
     for (case, grid) in cases() {
         let mut pixels = vec![180; 4 * (grid.width() * grid.height()) as usize];
         case.shadow

@@ -77,10 +77,7 @@ fn maps_of_an_independent_closed_form_agree() {
             Some(Method::Grid),
             Some(Method::NinePatch),
         ] {
-            let options = PixelOptions {
-                method,
-                ..PixelOptions::default()
-            };
+            let options = PixelOptions::default().with_method(method);
             let shadows = scene.ground_shadows().unwrap();
             shadows.draw(&mut map, &options, &mut scratch).unwrap();
             assert_eq!(map.densities().len(), truth.len(), "{name}");
@@ -112,10 +109,7 @@ fn pairs_hide_what_a_polygon_boolean_says() {
         let scene = Scene::from_json(&fs::read_to_string(&path).unwrap()).unwrap();
         let truth = read_map(&path.with_extension("png"));
         for method in [Some(Method::Exact), None] {
-            let options = PixelOptions {
-                method,
-                ..PixelOptions::default()
-            };
+            let options = PixelOptions::default().with_method(method);
             let shadows = scene.ground_shadows().unwrap();
             shadows.draw(&mut map, &options, &mut scratch).unwrap();
             assert_eq!(map.densities().len(), truth.len());
@@ -335,11 +329,7 @@ fn the_plans_choice_keeps_the_tolerance_on_random_shadows() {
         let light = Light::directional([0.0, 0.0], radius).unwrap();
         let shadow = light.cast(&shape, 1.0, 0.0).unwrap();
         let mut draw = |method, densities: &mut [f32]| {
-            let options = PixelOptions {
-                method,
-                tolerance: Tolerance::levels(levels).unwrap(),
-                ..PixelOptions::default()
-            };
+            let options = PixelOptions::new(Tolerance::levels(levels).unwrap()).with_method(method);
             shadow
                 .fill_f32(&grid, densities, &options, &mut scratch)
                 .unwrap();

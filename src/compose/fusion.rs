@@ -30,6 +30,7 @@ use crate::scratch::Scratch;
 
 /// What to do where casters of several elevations hide the light from one point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub enum Overlap {
     /// They hide the union of what each hides of the light's disc: no part of the light is taken away twice.
     #[default]

@@ -217,10 +217,7 @@ mod tests {
             };
             shadow.fill(&grid, None, &mut sink);
             let shape = Shape::rect(rect[0], rect[1], rect[2], rect[3]).unwrap();
-            let options = crate::PixelOptions {
-                method: Some(crate::plan::Method::Exact),
-                ..Default::default()
-            };
+            let options = crate::PixelOptions::default().with_method(crate::plan::Method::Exact);
             let mut expected = vec![0.0; 90 * 80];
             light
                 .cast(&shape, 1.0, 0.0)

@@ -18,6 +18,7 @@ pub struct Rim {
 
 /// The rim's section.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub enum Profile {
     /// A plane slope, with an edge at either end.
     Bevel,

@@ -31,6 +31,7 @@ pub trait Shading {
 
 /// The shading models, by name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub enum ShadingModel {
     /// One intensity a face.
     Flat,

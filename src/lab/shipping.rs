@@ -90,11 +90,7 @@ impl Technique for Shipping {
         densities: &mut [f32],
         scratch: &mut Scratch,
     ) -> Result<()> {
-        let options = PixelOptions {
-            tolerance: self.tolerance,
-            method: self.method,
-            ..PixelOptions::default()
-        };
+        let options = PixelOptions::new(self.tolerance).with_method(self.method);
         shadow.fill_f32(grid, densities, &options, scratch)
     }
 }

@@ -11,6 +11,7 @@ use libm::{asin, cbrt, cos, exp, sqrt};
 /// an outline is not straight, and where there is no umbra, each shows the value that it has on a straight edge where
 /// the exact density is the same, so that no rule of thumb is needed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[non_exhaustive]
 pub enum Profile {
     /// A straight ramp.
     Linear,

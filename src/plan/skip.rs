@@ -135,10 +135,7 @@ mod tests {
         assert_eq!(off, Ok(Some(Skip::OffGrid)));
         let mut hidden = Hidden::new(&grid);
         hidden.add(&Shape::rect(5.0, 5.0, 30.0, 30.0).unwrap(), &mut scratch);
-        let covered = PixelOptions {
-            hidden: Some(&hidden),
-            ..plain
-        };
+        let covered = plain.with_hidden(&hidden);
         assert_eq!(skipped(&shadow, &covered, None), Some(Skip::Hidden));
         assert_eq!(skipped(&cast(&card, 9.0), &covered, None), None);
     }

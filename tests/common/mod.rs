@@ -569,10 +569,7 @@ pub fn seeds(what: &str, count: usize) -> Range<usize> {
 }
 
 pub fn by(method: Option<Method>) -> PixelOptions<'static> {
-    PixelOptions {
-        method,
-        ..PixelOptions::default()
-    }
+    PixelOptions::default().with_method(method)
 }
 
 pub fn bits(densities: &[f32]) -> Vec<u32> {

@@ -40,10 +40,7 @@ impl Peer for Penumbral {
                 let mut hidden = Hidden::new(shadows.grid());
                 Box::new(move |canvas| {
                     shadows.hide_covered(&mut hidden, &mut scratch);
-                    let options = PixelOptions {
-                        hidden: Some(&hidden),
-                        ..PixelOptions::default()
-                    };
+                    let options = PixelOptions::default().with_hidden(&hidden);
                     Ok(shadows.blend_rgba8(canvas, &options, &mut scratch)?)
                 })
             }

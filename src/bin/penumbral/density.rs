@@ -33,12 +33,9 @@ pub(crate) fn run(
         if opaque {
             shadows.hide_covered(&mut hidden, &mut scratch);
         }
-        let options = PixelOptions {
-            tolerance,
-            method,
-            hidden: opaque.then_some(&hidden),
-            ..PixelOptions::default()
-        };
+        let options = PixelOptions::new(tolerance)
+            .with_method(method)
+            .with_hidden(opaque.then_some(&hidden));
         shadows
             .blend_rgba8(&mut canvas, &options, &mut scratch)
             .map_err(|error| error.to_string())?;
@@ -50,12 +47,9 @@ pub(crate) fn run(
     }
     bar.finish_and_clear();
     let mut map = DensityMap::default();
-    let options = PixelOptions {
-        tolerance,
-        method,
-        hidden: opaque.then_some(&hidden),
-        ..PixelOptions::default()
-    };
+    let options = PixelOptions::new(tolerance)
+        .with_method(method)
+        .with_hidden(opaque.then_some(&hidden));
     shadows
         .draw(&mut map, &options, &mut scratch)
         .map_err(|error| error.to_string())?;

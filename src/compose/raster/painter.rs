@@ -275,10 +275,7 @@ impl Painter {
             return Ok(());
         }
         let hidden = self.hidden_pixels(layer, window);
-        let options = PixelOptions {
-            hidden: Some(&hidden),
-            ..PixelOptions::default()
-        };
+        let options = PixelOptions::default().with_hidden(&hidden);
         let of_surface;
         let casts = if layer.rank == 0 {
             &job.on_ground
