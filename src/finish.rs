@@ -8,7 +8,7 @@
 //! |---|---|
 //! | `rim.rs`, `analytic.rs`, `mesh.rs` | [`Rim`], the surface itself, and as triangles with normals and curvature factors |
 //! | `illumination.rs`, `number.rs` | [`Material`], [`Lighting`]: how bright a point is; with Taylor expansions as well as with numbers |
-//! | `shading.rs`, `shading/` | [`Shading`] and [`Canvas`]: a model a file |
+//! | `shading.rs`, `shading/` | [`ShadingModel`] and [`Canvas`]: a model a file |
 //! | `tile.rs`, `detail.rs` | [`Tile`]: images averaged over pixels; [`Bump`], [`Frame`], [`Environment`] |
 //! | `draw.rs` | a surface's finish as colours |
 //!
@@ -33,9 +33,7 @@ pub(crate) use self::draw::Finished;
 pub use self::illumination::{Intensity, Lighting, Material};
 pub use self::mesh::{RimFace, RimMesh, RimVertex};
 pub use self::rim::{Profile, Rim};
-pub use self::shading::{
-    Canvas, CurvatureDriven, FastPhong, Flat, Gouraud, Phong, Shading, ShadingModel, normals,
-};
+pub use self::shading::{Canvas, ShadingModel, normals};
 pub use self::tile::{MAX_TEXELS, Tile};
 
 /// How a surface looks in its scene's light: all of it is lit then, the flat part as well.

@@ -190,7 +190,7 @@ fn shaded(model: ShadingModel, light: Light, steps: u32) -> Vec<Option<Intensity
         .unwrap();
     let lighting = Lighting::new([(light, 1.0)], 8.0, &material).unwrap();
     let mut canvas = Canvas::new(&Grid::new([0.0, 0.0], [480, 360], 2.0).unwrap());
-    canvas.draw(&mesh, &lighting, model.shading());
+    canvas.draw(&mesh, &lighting, model);
     canvas.pixels().to_vec()
 }
 
@@ -367,7 +367,7 @@ fn rimmed() -> Finish {
 fn what_is_drawn_again_is_the_same_bits() {
     let red = Color::rgb(200, 60, 50);
     let before = scene(Some(rimmed()), red);
-    for shading in ShadingModel::ALL {
+    for &shading in ShadingModel::ALL {
         let after = scene(Some(rimmed().with_shading(shading)), red);
         let mut pixmap = picture(&before);
         let boxes = after.damage_since(&before).unwrap();

@@ -74,7 +74,7 @@ impl<'a> Finished<'a> {
 
     fn shaded(&self, mesh: &RimMesh, grid: &Grid) -> Shaded {
         let mut canvas = Canvas::within(grid, SAMPLES, 1);
-        canvas.draw(mesh, &self.lighting, self.finish.shading.shading());
+        canvas.draw(mesh, &self.lighting, self.finish.shading);
         Shaded {
             canvas,
             stride: (SAMPLES * (grid.width() + 2)) as usize,

@@ -10,45 +10,33 @@ use core::ops::{Add, Div, Mul, Range, Sub};
 
 use glam::{DVec2, DVec3};
 
-pub use self::curvature::CurvatureDriven;
-pub use self::fast_phong::FastPhong;
-pub use self::flat::Flat;
-pub use self::gouraud::Gouraud;
-pub use self::phong::Phong;
-
 use super::{Intensity, Lighting, RimFace, RimMesh};
 use crate::grid::Grid;
 use crate::scan::{Corner, Run, Value, scan_convert};
 
 /// A way to shade a mesh.
-pub trait Shading {
-    /// Its name, as scenes give it.
-    fn name(&self) -> &'static str;
-
-    /// Shades the pixels of a canvas whose centres the mesh covers.
-    fn draw(&self, mesh: &RimMesh, lighting: &Lighting, canvas: &mut Canvas);
-}
-
-/// The shading models, by name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum ShadingModel {
-    /// One intensity a face.
+    /// One intensity a face, that of its middle: curved surfaces look faceted.
     Flat,
-    /// Intensities interpolated between vertices.
+    /// Intensities interpolated between vertices. It cannot find a highlight inside of a face, and where intensity bends at an edge
+    /// the eye sees a band (Mach 1865).
     Gouraud,
-    /// Normals interpolated between vertices.
+    /// Normals interpolated between vertices: round wherever vertices have one normal for all of their faces, at creases as well.
     Phong,
-    /// Phong's intensities by a Taylor expansion over each face.
+    /// Phong's intensities by a Taylor expansion over each face: within a level of Phong's at its corners, or Phong's own where the
+    /// expansion is not.
     FastPhong,
-    /// Normals of faces and of vertices blended by curvature: round where it is round, sharp where it is sharp.
+    /// Phong's illumination with the interpolated vertex normal and the face's own blended by the interpolated curvature factor, so
+    /// that in one mesh a round corner stays round and a sharp one sharp.
     #[default]
     CurvatureDriven,
 }
 
 impl ShadingModel {
     /// All of them.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: &'static [Self] = &[
         Self::Flat,
         Self::Gouraud,
         Self::Phong,
@@ -56,15 +44,15 @@ impl ShadingModel {
         Self::CurvatureDriven,
     ];
 
-    /// The model itself.
+    /// Its name, as scenes give it.
     #[must_use]
-    pub fn shading(self) -> &'static dyn Shading {
+    pub fn name(self) -> &'static str {
         match self {
-            Self::Flat => &Flat,
-            Self::Gouraud => &Gouraud,
-            Self::Phong => &Phong,
-            Self::FastPhong => &FastPhong,
-            Self::CurvatureDriven => &CurvatureDriven,
+            Self::Flat => "flat",
+            Self::Gouraud => "gouraud",
+            Self::Phong => "phong",
+            Self::FastPhong => "fast-phong",
+            Self::CurvatureDriven => "curvature",
         }
     }
 }
@@ -171,10 +159,16 @@ impl<P: Clone> Canvas<P> {
 }
 
 impl Canvas {
-    /// Shades a mesh anew.
-    pub fn draw(&mut self, mesh: &RimMesh, lighting: &Lighting, shading: &dyn Shading) {
+    /// Shades the pixels whose centres a mesh covers, and no others.
+    pub fn draw(&mut self, mesh: &RimMesh, lighting: &Lighting, model: ShadingModel) {
         self.pixels.fill(None);
-        shading.draw(mesh, lighting, self);
+        match model {
+            ShadingModel::Flat => flat::draw(mesh, lighting, self),
+            ShadingModel::Gouraud => gouraud::draw(mesh, lighting, self),
+            ShadingModel::Phong => phong::draw(mesh, lighting, self),
+            ShadingModel::FastPhong => fast_phong::draw(mesh, lighting, self),
+            ShadingModel::CurvatureDriven => curvature::draw(mesh, lighting, self),
+        }
     }
 }
 

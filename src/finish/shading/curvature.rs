@@ -3,30 +3,19 @@
 
 use glam::DVec3;
 
-use super::{Canvas, Fragment, Shading};
+use super::{Canvas, Fragment};
 use crate::finish::{Lighting, RimFace, RimMesh};
-
-/// Curvature-driven shading: Phong's illumination with the interpolated vertex normal and the face's own blended by the
-/// interpolated curvature factor, so that in one mesh a round corner stays round and a sharp one sharp.
-#[derive(Debug, Clone, Copy)]
-pub struct CurvatureDriven;
 
 /// How soon the face's normal takes over beside a crease, where a vertex' normal is a mean over the crease: it is so wrong there
 /// by up to half of the crease's angle, of which x (1 - x)^7, at most 1/17, is left over all factors x.
 const TAKEOVER: i32 = 7;
 
-impl Shading for CurvatureDriven {
-    fn name(&self) -> &'static str {
-        "curvature"
-    }
-
-    fn draw(&self, mesh: &RimMesh, lighting: &Lighting, canvas: &mut Canvas) {
-        for face in mesh.faces() {
-            canvas.each(mesh, face, Fragment::corners(mesh, face), |pixel, at| {
-                let normal = normal(&at, face);
-                *pixel = Some(lighting.at(at.point.to_array(), normal.to_array()));
-            });
-        }
+pub(super) fn draw(mesh: &RimMesh, lighting: &Lighting, canvas: &mut Canvas) {
+    for face in mesh.faces() {
+        canvas.each(mesh, face, Fragment::corners(mesh, face), |pixel, at| {
+            let normal = normal(&at, face);
+            *pixel = Some(lighting.at(at.point.to_array(), normal.to_array()));
+        });
     }
 }
 

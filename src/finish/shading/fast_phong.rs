@@ -3,13 +3,9 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{Canvas, Fragment, Shading};
+use super::{Canvas, Fragment};
 use crate::finish::number::{Number, Taylor};
 use crate::finish::{Intensity, Lighting, RimFace, RimMesh};
-
-/// Fast Phong shading: within a level of Phong's at the corners of each face, or Phong's own where the expansion is not.
-#[derive(Debug, Clone, Copy)]
-pub struct FastPhong;
 
 /// How far an expansion may be from Phong's intensities at a face's corners, in levels.
 const LEVELS: f64 = 1.0;
@@ -17,33 +13,27 @@ const LEVELS: f64 = 1.0;
 /// Expanding costs as much as so many pixels of Phong's: faces of fewer are shaded pixel by pixel.
 const FEWEST_PIXELS: f64 = 8.0;
 
-impl Shading for FastPhong {
-    fn name(&self) -> &'static str {
-        "fast-phong"
-    }
-
-    fn draw(&self, mesh: &RimMesh, lighting: &Lighting, canvas: &mut Canvas) {
-        let mut known: Vec<Option<(f64, f64)>> = vec![None; mesh.vertices().len()];
-        for face in mesh.faces() {
-            let corners = Fragment::corners(mesh, face);
-            let places = face
-                .vertices
-                .map(|i| canvas.place(mesh.vertices()[i].position));
-            let mut at_vertex = |corner: usize| {
-                *known[face.vertices[corner]].get_or_insert_with(|| {
-                    let Fragment { point, normal, .. } = corners[corner];
-                    lighting.intensity(point.to_array(), normal.to_array())
-                })
-            };
-            match Expansion::new(lighting, &corners, places) {
-                Some(expansion) if expansion.is_near(&mut at_vertex) => {
-                    expansion.draw(mesh, face, canvas);
-                }
-                _ => canvas.each(mesh, face, corners, |pixel, at| {
-                    let normal = super::phong::normal(&at);
-                    *pixel = Some(lighting.at(at.point.to_array(), normal.to_array()));
-                }),
+pub(super) fn draw(mesh: &RimMesh, lighting: &Lighting, canvas: &mut Canvas) {
+    let mut known: Vec<Option<(f64, f64)>> = vec![None; mesh.vertices().len()];
+    for face in mesh.faces() {
+        let corners = Fragment::corners(mesh, face);
+        let places = face
+            .vertices
+            .map(|i| canvas.place(mesh.vertices()[i].position));
+        let mut at_vertex = |corner: usize| {
+            *known[face.vertices[corner]].get_or_insert_with(|| {
+                let Fragment { point, normal, .. } = corners[corner];
+                lighting.intensity(point.to_array(), normal.to_array())
+            })
+        };
+        match Expansion::new(lighting, &corners, places) {
+            Some(expansion) if expansion.is_near(&mut at_vertex) => {
+                expansion.draw(mesh, face, canvas);
             }
+            _ => canvas.each(mesh, face, corners, |pixel, at| {
+                let normal = super::phong::normal(&at);
+                *pixel = Some(lighting.at(at.point.to_array(), normal.to_array()));
+            }),
         }
     }
 }

@@ -2,24 +2,14 @@
 
 use glam::DVec3;
 
-use super::{Canvas, Fragment, Shading};
+use super::{Canvas, Fragment};
 use crate::finish::{Lighting, RimMesh};
 
-/// Phong shading: round wherever vertices have one normal for all of their faces, at creases as well.
-#[derive(Debug, Clone, Copy)]
-pub struct Phong;
-
-impl Shading for Phong {
-    fn name(&self) -> &'static str {
-        "phong"
-    }
-
-    fn draw(&self, mesh: &RimMesh, lighting: &Lighting, canvas: &mut Canvas) {
-        for face in mesh.faces() {
-            canvas.each(mesh, face, Fragment::corners(mesh, face), |pixel, at| {
-                *pixel = Some(lighting.at(at.point.to_array(), normal(&at).to_array()));
-            });
-        }
+pub(super) fn draw(mesh: &RimMesh, lighting: &Lighting, canvas: &mut Canvas) {
+    for face in mesh.faces() {
+        canvas.each(mesh, face, Fragment::corners(mesh, face), |pixel, at| {
+            *pixel = Some(lighting.at(at.point.to_array(), normal(&at).to_array()));
+        });
     }
 }
 

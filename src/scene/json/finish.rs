@@ -159,10 +159,11 @@ fn named(error: Error) -> String {
 
 fn shading(name: &str) -> Outcome<ShadingModel> {
     let all = ShadingModel::ALL;
-    all.into_iter()
-        .find(|model| model.shading().name() == name)
+    all.iter()
+        .copied()
+        .find(|model| model.name() == name)
         .ok_or_else(|| {
-            let names = all.map(|model| model.shading().name());
+            let names: Vec<&str> = all.iter().map(|model| model.name()).collect();
             format!(
                 "finish.shading {name:?} is unknown: give {}",
                 names.join(", ")

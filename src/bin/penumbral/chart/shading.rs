@@ -37,13 +37,13 @@ fn measure() -> penumbral::Result<Vec<Row>> {
     let truth = truth(&RimSurface::new(&card, &rim), &lighting);
     let mut canvas = Canvas::new(&grid);
     let mut rows = Vec::new();
-    for model in ShadingModel::ALL {
+    for &model in ShadingModel::ALL {
         for steps in STEPS {
             let mesh = RimMesh::new(&card, &rim.with_steps(steps)?)?;
             let (mut least, mut spent) = (f64::INFINITY, 0.0);
             while spent < BUDGET.as_secs_f64() {
                 let start = Instant::now();
-                canvas.draw(&mesh, &lighting, model.shading());
+                canvas.draw(&mesh, &lighting, model);
                 black_box(canvas.pixels());
                 let time = start.elapsed().as_secs_f64();
                 least = least.min(time);
@@ -59,7 +59,7 @@ fn measure() -> penumbral::Result<Vec<Row>> {
                 }
             }
             rows.push(Row {
-                method: model.shading().name().to_owned(),
+                method: model.name().to_owned(),
                 setting: format!("{steps} steps"),
                 scene: "rim".to_owned(),
                 radius: 0.0,
