@@ -10,7 +10,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use penumbral::finish::{Canvas, Lighting, Material, Profile, Rim, RimMesh, ShadingModel};
+use penumbral::finish::{Canvas, Lighting, Material, Rim, RimMesh, RimProfile, ShadingModel};
 use penumbral::{CornerRadii, Grid, Light, Shape};
 
 fn card() -> Shape {
@@ -19,7 +19,7 @@ fn card() -> Shape {
 }
 
 fn mesh(steps: u32) -> RimMesh {
-    let rim = Rim::new(24.0, 24.0, Profile::QuarterRound).unwrap();
+    let rim = Rim::new(24.0, 24.0, RimProfile::QuarterRound).unwrap();
     RimMesh::new(&card(), &rim.with_steps(steps).unwrap()).unwrap()
 }
 

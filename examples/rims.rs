@@ -7,7 +7,7 @@
 
 use std::{env, error::Error, path::PathBuf};
 
-use penumbral::finish::{Finish, Profile, Rim, RimMesh, RimSurface, ShadingModel, normals};
+use penumbral::finish::{Finish, Rim, RimMesh, RimProfile, RimSurface, ShadingModel, normals};
 use penumbral::{Color, CornerRadii, Grid, Light, Renderer, Scene, Shape, Surface};
 use tiny_skia::Pixmap;
 
@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let output = env::args_os().nth(1).map(PathBuf::from);
     let output = output.unwrap_or_else(|| env::temp_dir().join("rims.png"));
 
-    let rim = Rim::new(24.0, 24.0, Profile::QuarterRound)?.with_steps(12)?;
+    let rim = Rim::new(24.0, 24.0, RimProfile::QuarterRound)?.with_steps(12)?;
     let mut scene = Scene::new([840.0, 240.0], Light::new([200.0, -300.0, 700.0], 40.0)?)?;
     for (index, (model, name)) in MODELS.into_iter().enumerate() {
         let card = card(20.0 + 280.0 * index as f32)?;

@@ -453,7 +453,7 @@ pub(crate) fn scene_json(data: &[u8]) {
         .with_pixels(1 << 15)
         .with_vertices(200)
         .with_surfaces(6);
-    let Ok(scene) = Scene::from_json_within(text, &limits, &mut |_| Err(String::new())) else {
+    let Ok(scene) = Scene::from_json_with_limits(text, &limits, &mut |_| Err(String::new())) else {
         return;
     };
     draw(&scene);

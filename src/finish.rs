@@ -32,17 +32,17 @@ pub use self::detail::{Bump, Environment, Frame};
 pub(crate) use self::draw::Finished;
 pub use self::illumination::{Intensity, Lighting, Material};
 pub use self::mesh::{RimFace, RimMesh, RimVertex};
-pub use self::rim::{Profile, Rim};
+pub use self::rim::{Rim, RimProfile};
 pub use self::shading::{Canvas, ShadingModel, normals};
 pub use self::tile::{MAX_TEXELS, Tile};
 
 /// How a surface looks in its scene's light: all of it is lit then, the flat part as well.
 ///
 /// ```
-/// use penumbral::finish::{Finish, Profile, Rim};
+/// use penumbral::finish::{Finish, Rim, RimProfile};
 /// use penumbral::{Color, Light, Scene, Shape, Surface};
 ///
-/// let finish = Finish::new().with_rim(Rim::new(6.0, 6.0, Profile::QuarterRound)?);
+/// let finish = Finish::new().with_rim(Rim::new(6.0, 6.0, RimProfile::QuarterRound)?);
 /// let button = Shape::rounded_rect(20.0, 20.0, 80.0, 40.0, 12.0)?;
 /// let surface = Surface::new(button, 4.0).with_fill(Color::rgb(60, 120, 200));
 /// let mut scene = Scene::new([120.0, 80.0], Light::new([0.0, -100.0, 300.0], 40.0)?)?;

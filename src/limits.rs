@@ -22,7 +22,7 @@ use crate::scene::Scene;
 /// use penumbral::{Limits, Scene};
 ///
 /// let limits = Limits::default().with_surfaces(100);
-/// let scene = Scene::from_json_within(
+/// let scene = Scene::from_json_with_limits(
 ///     r#"{"canvas": [60, 40], "light": {"x": 30, "y": 0, "z": 600, "radius": 800}, "surfaces": []}"#,
 ///     &limits,
 ///     &mut |name| Err(format!("no image {name}")),

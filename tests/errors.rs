@@ -67,7 +67,7 @@ fn skipped(options: &PixelOptions<'_>) -> Result<(), Error> {
 }
 
 fn limited(limits: Limits) -> Result<(), Error> {
-    Renderer::within(limits).render(&scene(), &mut pixmap(60))
+    Renderer::with_limits(limits).render(&scene(), &mut pixmap(60))
 }
 
 /// The error's variant, an input that causes it, and what is said of it.

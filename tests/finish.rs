@@ -5,8 +5,8 @@
 use std::sync::Arc;
 
 use penumbral::finish::{
-    Canvas, Finish, Intensity, Lighting, Material, Profile, Rim, RimMesh, RimSurface, ShadingModel,
-    Tile, normals,
+    Canvas, Finish, Intensity, Lighting, Material, Rim, RimMesh, RimProfile, RimSurface,
+    ShadingModel, Tile, normals,
 };
 use penumbral::{
     Color, CornerRadii, Error, FillRule, Grid, Group, Image, Light, Renderer, Scene, Shape,
@@ -18,7 +18,10 @@ use tiny_skia::Pixmap;
 fn card() -> (Shape, Rim) {
     let radii = CornerRadii([[60.0; 2], [60.0; 2], [0.0; 2], [60.0; 2]]);
     let card = Shape::rounded_rect(0.0, 0.0, 240.0, 180.0, radii).unwrap();
-    (card, Rim::new(24.0, 24.0, Profile::QuarterRound).unwrap())
+    (
+        card,
+        Rim::new(24.0, 24.0, RimProfile::QuarterRound).unwrap(),
+    )
 }
 
 fn degrees_between(a: [f64; 3], b: [f64; 3]) -> f64 {
@@ -147,7 +150,11 @@ const OFF_IN_FACES: f64 = 0.15;
 #[test]
 fn meshes_are_the_surface_on_any_outline() {
     for (name, shape) in outlines() {
-        for profile in [Profile::Bevel, Profile::QuarterRound, Profile::Cosine] {
+        for profile in [
+            RimProfile::Bevel,
+            RimProfile::QuarterRound,
+            RimProfile::Cosine,
+        ] {
             let rim = Rim::new(10.0, 8.0, profile).unwrap();
             let mesh = RimMesh::new(&shape, &rim).unwrap();
             let surface = RimSurface::new(&shape, &rim);
@@ -163,7 +170,7 @@ fn meshes_are_the_surface_on_any_outline() {
                 let middle = [0, 1, 2].map(|i| corners.iter().map(|at| at[i]).sum::<f64>() / 3.0);
                 let off = miss(middle);
                 assert!(
-                    profile == Profile::QuarterRound || off < OFF_IN_FACES,
+                    profile == RimProfile::QuarterRound || off < OFF_IN_FACES,
                     "{name}, {profile:?}: {off}"
                 );
             }
@@ -360,7 +367,7 @@ fn scene(finish: Option<Finish>, fill: Color) -> Scene {
 }
 
 fn rimmed() -> Finish {
-    Finish::new().with_rim(Rim::new(9.0, 9.0, Profile::QuarterRound).unwrap())
+    Finish::new().with_rim(Rim::new(9.0, 9.0, RimProfile::QuarterRound).unwrap())
 }
 
 #[test]

@@ -63,9 +63,9 @@ impl Renderer {
         Self::default()
     }
 
-    /// One that refuses scenes over other limits.
+    /// One with other limits: it refuses scenes over them.
     #[must_use]
-    pub fn within(limits: Limits) -> Self {
+    pub fn with_limits(limits: Limits) -> Self {
         Self {
             limits,
             ..Self::default()

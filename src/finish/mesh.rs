@@ -62,10 +62,10 @@ pub struct RimFace {
 ///
 /// ```
 /// use penumbral::Shape;
-/// use penumbral::finish::{Profile, Rim, RimMesh};
+/// use penumbral::finish::{Rim, RimMesh, RimProfile};
 ///
 /// let card = Shape::rounded_rect(0.0, 0.0, 80.0, 60.0, 12.0)?;
-/// let mesh = RimMesh::new(&card, &Rim::new(4.0, 4.0, Profile::QuarterRound)?)?;
+/// let mesh = RimMesh::new(&card, &Rim::new(4.0, 4.0, RimProfile::QuarterRound)?)?;
 /// assert!(mesh.vertices().iter().all(|vertex| vertex.curvature == 0.0));
 /// # Ok::<(), penumbral::Error>(())
 /// ```

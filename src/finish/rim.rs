@@ -12,14 +12,14 @@ use crate::error::{self, Result};
 pub struct Rim {
     width: f64,
     height: f64,
-    profile: Profile,
+    profile: RimProfile,
     steps: u32,
 }
 
 /// The rim's section.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
-pub enum Profile {
+pub enum RimProfile {
     /// A plane slope, with an edge at either end.
     Bevel,
     /// A quarter of an ellipse: level where it meets the flat part, upright at the outline.
@@ -34,7 +34,7 @@ impl Rim {
     ///
     /// # Errors
     /// A width or height that is not finite, not above 0 or passes [`MAX_COORDINATE`](crate::MAX_COORDINATE).
-    pub fn new(width: f32, height: f32, profile: Profile) -> Result<Self> {
+    pub fn new(width: f32, height: f32, profile: RimProfile) -> Result<Self> {
         Ok(Self {
             width: error::positive("rim.width", f64::from(width))?,
             height: error::positive("rim.height", f64::from(height))?,
@@ -69,8 +69,8 @@ impl Rim {
     pub(super) fn rings(&self) -> Vec<f64> {
         let share = |step: u32| f64::from(step) / f64::from(self.steps);
         let depth = |step| match self.profile {
-            Profile::QuarterRound => 1.0 - cos(FRAC_PI_2 * share(step)),
-            Profile::Bevel | Profile::Cosine => share(step),
+            RimProfile::QuarterRound => 1.0 - cos(FRAC_PI_2 * share(step)),
+            RimProfile::Bevel | RimProfile::Cosine => share(step),
         };
         let inner = (1..self.steps).map(depth);
         [0.0].into_iter().chain(inner).chain([1.0]).collect()
@@ -80,9 +80,9 @@ impl Rim {
     pub(super) fn rise(&self, depth: f64) -> f64 {
         let depth = depth.clamp(0.0, 1.0);
         let share = match self.profile {
-            Profile::Bevel => depth,
-            Profile::QuarterRound => sqrt(depth * (2.0 - depth)),
-            Profile::Cosine => (1.0 - cos(PI * depth)) / 2.0,
+            RimProfile::Bevel => depth,
+            RimProfile::QuarterRound => sqrt(depth * (2.0 - depth)),
+            RimProfile::Cosine => (1.0 - cos(PI * depth)) / 2.0,
         };
         self.height * (share - 1.0)
     }
@@ -94,13 +94,13 @@ impl Rim {
         }
         let depth = depth.max(0.0);
         let (across, up) = match self.profile {
-            Profile::Bevel => (self.height, self.width),
+            RimProfile::Bevel => (self.height, self.width),
             // The ellipse's gradient.
-            Profile::QuarterRound => (
+            RimProfile::QuarterRound => (
                 self.height * (1.0 - depth),
                 self.width * sqrt(depth * (2.0 - depth)),
             ),
-            Profile::Cosine => (FRAC_PI_2 * self.height * sin(PI * depth), self.width),
+            RimProfile::Cosine => (FRAC_PI_2 * self.height * sin(PI * depth), self.width),
         };
         let length = sqrt(across * across + up * up);
         (outwards * (across / length)).extend(up / length)
@@ -108,7 +108,7 @@ impl Rim {
 
     /// The largest angle between the normals of one ring and the next, radians.
     pub(super) fn turn(&self) -> f64 {
-        if self.profile == Profile::Bevel {
+        if self.profile == RimProfile::Bevel {
             return 0.0;
         }
         let angles: Vec<f64> = self

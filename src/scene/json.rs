@@ -118,14 +118,14 @@ impl Scene {
         text: &str,
         images: &mut dyn FnMut(&str) -> core::result::Result<Image, String>,
     ) -> Result<Self> {
-        Self::from_json_within(text, &Limits::default(), images)
+        Self::from_json_with_limits(text, &Limits::default(), images)
     }
 
     /// As [`Scene::from_json_with_images`], with other limits.
     ///
     /// # Errors
     /// As [`Scene::from_json_with_images`].
-    pub fn from_json_within(
+    pub fn from_json_with_limits(
         text: &str,
         limits: &Limits,
         images: &mut dyn FnMut(&str) -> core::result::Result<Image, String>,

@@ -9,7 +9,9 @@ use super::optional::{object, some};
 use super::surface::{Outcome, text};
 use crate::error::{self, Error};
 use crate::finish::detail::MOST_TURN;
-use crate::finish::{Bump, Environment, Finish, Frame, Material, Profile, Rim, ShadingModel, Tile};
+use crate::finish::{
+    Bump, Environment, Finish, Frame, Material, Rim, RimProfile, ShadingModel, Tile,
+};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -174,9 +176,9 @@ fn shading(name: &str) -> Outcome<ShadingModel> {
 impl RimFields {
     fn build(&self) -> Outcome<Rim> {
         let profile = match self.profile.as_deref() {
-            None | Some("quarter-round") => Profile::QuarterRound,
-            Some("bevel") => Profile::Bevel,
-            Some("cosine") => Profile::Cosine,
+            None | Some("quarter-round") => RimProfile::QuarterRound,
+            Some("bevel") => RimProfile::Bevel,
+            Some("cosine") => RimProfile::Cosine,
             Some(other) => {
                 return Err(format!(
                     "finish.rim.profile {other:?} is unknown: give bevel, quarter-round or cosine"

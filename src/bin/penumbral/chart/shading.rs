@@ -4,7 +4,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use penumbral::finish::{
-    Canvas, Intensity, Lighting, Material, Profile, Rim, RimMesh, RimSurface, ShadingModel,
+    Canvas, Intensity, Lighting, Material, Rim, RimMesh, RimProfile, RimSurface, ShadingModel,
 };
 use penumbral::{Grid, Light, Shape};
 
@@ -30,7 +30,7 @@ pub(crate) fn picture(rows: &[Row]) -> Picture {
 
 fn measure() -> penumbral::Result<Vec<Row>> {
     let card = Shape::rounded_rect(40.0, 40.0, 400.0, 400.0, 90.0)?;
-    let rim = Rim::new(60.0, 60.0, Profile::QuarterRound)?;
+    let rim = Rim::new(60.0, 60.0, RimProfile::QuarterRound)?;
     let light = Light::new([60.0, -100.0, 500.0], 20.0)?;
     let lighting = Lighting::new([(light, 1.0)], 8.0, &Material::default())?;
     let grid = Grid::new([0.0, 0.0], [SIDE, SIDE], 1.0)?;
