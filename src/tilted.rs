@@ -5,7 +5,6 @@
 
 use core::ops::Range;
 
-use fearless_simd::Level;
 use glam::{DVec2, DVec3};
 
 use crate::apart::around;
@@ -106,6 +105,12 @@ impl TiltedShadow {
         }
     }
 
+    /// Whether there is no shadow at all: nothing of the caster is between its receiver and the light.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.loops.is_empty()
+    }
+
     /// The smallest box that holds all projection circles, or none for an empty shadow: outside of it the density is 0. A
     /// caster that reaches the light's plane shades without end: such a box ends at [`MAX_COORDINATE`].
     #[must_use]
@@ -142,9 +147,15 @@ impl TiltedShadow {
     ///
     /// # Errors
     /// A buffer shorter than the grid needs, and options for another grid.
-    pub fn fill_a8(&self, grid: &Grid, mask: &mut [u8], options: &PixelOptions<'_>) -> Result<()> {
-        let mut sink = options.onto_mask(grid, mask, Level::new())?;
-        tilted::fill(self, grid, options.hidden, &mut sink);
+    pub fn fill_a8(
+        &self,
+        grid: &Grid,
+        mask: &mut [u8],
+        options: &PixelOptions<'_>,
+        scratch: &mut Scratch,
+    ) -> Result<()> {
+        let mut sink = options.onto_mask(grid, mask, scratch.level())?;
+        tilted::fill(self, grid, options.hidden, scratch, &mut sink);
         Ok(())
     }
 
@@ -157,9 +168,10 @@ impl TiltedShadow {
         grid: &Grid,
         densities: &mut [f32],
         options: &PixelOptions<'_>,
+        scratch: &mut Scratch,
     ) -> Result<()> {
         let mut sink = options.onto_densities(grid, densities)?;
-        tilted::fill(self, grid, options.hidden, &mut sink);
+        tilted::fill(self, grid, options.hidden, scratch, &mut sink);
         Ok(())
     }
 
@@ -176,7 +188,7 @@ impl TiltedShadow {
         scratch: &mut Scratch,
     ) -> Result<()> {
         let mut sink = options.onto_rgba8(grid, pixels, paint, scratch)?;
-        tilted::fill(self, grid, options.hidden, &mut sink);
+        tilted::fill(self, grid, options.hidden, scratch, &mut sink);
         Ok(())
     }
 }

@@ -5,7 +5,8 @@
 use core::f32::consts::PI;
 
 use penumbral::{
-    Grid, Light, MeshVertex, PixelOptions, Pose, ShadowMesh, Shape, TiltedShadow, Tolerance,
+    Grid, Light, MeshVertex, PixelOptions, Pose, Scratch, ShadowMesh, Shape, TiltedShadow,
+    Tolerance,
 };
 
 const LIGHT: [f64; 3] = [80.0, 30.0, 300.0];
@@ -86,6 +87,16 @@ fn a_level_pose_casts_as_the_shape_does() {
 }
 
 #[test]
+fn a_card_below_its_receiver_casts_nothing() {
+    let pose = Pose::turned(40.0, PIVOT.map(|v| v as f32), [0.0, 1.0], 0.3).unwrap();
+    for (receiver, is_empty) in [(0.0, false), (40.0, false), (60.0, true)] {
+        let shadow = light().cast_posed(&card(), &pose, receiver).unwrap();
+        assert_eq!(shadow.is_empty(), is_empty, "{receiver}");
+        assert_eq!(shadow.bounds().is_none(), is_empty, "{receiver}");
+    }
+}
+
+#[test]
 fn a_flipping_card_hides_what_rays_say() {
     let mut worst: f64 = 0.0;
     // Above the ground all the time; then half below it when upright.
@@ -111,8 +122,9 @@ fn a_flipping_card_hides_what_rays_say() {
 fn drawn(shadow: &TiltedShadow, size: [u32; 2]) -> Vec<f32> {
     let grid = Grid::new([0.0, 0.0], size, 1.0).unwrap();
     let mut densities = vec![0.0; (size[0] * size[1]) as usize];
+    let options = PixelOptions::default();
     shadow
-        .fill_f32(&grid, &mut densities, &PixelOptions::default())
+        .fill_f32(&grid, &mut densities, &options, &mut Scratch::new())
         .unwrap();
     densities
 }

@@ -44,7 +44,7 @@ impl AnyShadow {
     ) {
         match self {
             Self::Level(shadow) => density::draw(shadow, grid, options, scratch, sink),
-            Self::Tilted(shadow) => tilted::fill(shadow, grid, options.hidden, sink),
+            Self::Tilted(shadow) => tilted::fill(shadow, grid, options.hidden, scratch, sink),
             Self::Alpha(shadow) => shadow.fill(grid, options.hidden, sink),
         }
     }

@@ -13,6 +13,7 @@ use super::{Sink, averaged_side, quadrature};
 use crate::grid::Grid;
 use crate::hidden::Hidden;
 use crate::outline::{Edge, Line, clip_to_box};
+use crate::scratch::Scratch;
 use crate::tilted::{Circle, TiltedShadow};
 
 /// The side of a tile, in pixels.
@@ -51,6 +52,7 @@ pub(crate) fn fill(
     shadow: &TiltedShadow,
     grid: &Grid,
     hidden: Option<&Hidden>,
+    scratch: &mut Scratch,
     sink: &mut dyn Sink,
 ) {
     let Some((min, max)) = shadow.hull() else {
@@ -61,6 +63,15 @@ pub(crate) fn fill(
     let extent = max * scale + 1.0 - base;
     let corner = grid.corner() - base;
     let whole = corner.floor();
+    let [columns, rows] = [0, 1].map(|axis| {
+        let first = whole[axis] as i64;
+        let end = first + i64::from([grid.width(), grid.height()][axis]);
+        first.max(0)..end.min(extent[axis].ceil() as i64 + 1)
+    });
+    let first = [whole.x as i64, whole.y as i64];
+    if columns.is_empty() || rows.is_empty() {
+        return;
+    }
     let place = |circle: &Circle| circle.placed(scale, base);
     let loops: Vec<Vec<Circle>> = shadow
         .loops
@@ -80,17 +91,10 @@ pub(crate) fn fill(
         phase: corner - whole,
         near: Vec::new(),
         whole: 0.0,
-        edges: Vec::new(),
+        edges: scratch.take(),
+        clipped: scratch.take(),
+        spare: scratch.take(),
     };
-    let [columns, rows] = [0, 1].map(|axis| {
-        let first = whole[axis] as i64;
-        let end = first + i64::from([grid.width(), grid.height()][axis]);
-        first.max(0)..end.min(extent[axis].ceil() as i64 + 1)
-    });
-    let first = [whole.x as i64, whole.y as i64];
-    if columns.is_empty() || rows.is_empty() {
-        return;
-    }
     for top in
         (rows.start.div_euclid(TILE)..=(rows.end - 1).div_euclid(TILE)).map(|tile| tile * TILE)
     {
@@ -118,6 +122,9 @@ pub(crate) fn fill(
             }
         }
     }
+    for edges in [painter.edges, painter.clipped, painter.spare] {
+        scratch.give(edges);
+    }
 }
 
 struct Painter {
@@ -131,6 +138,10 @@ struct Painter {
     whole: f64,
     /// A pixel's loops as they are seen from one point of the light.
     edges: Vec<Edge>,
+    /// The part of them in the pixel.
+    clipped: Vec<Edge>,
+    /// Between one side of the pixel and the next.
+    spare: Vec<Edge>,
 }
 
 /// A vertex as seen from the middle of a tile, and how far it may be from there seen from another point of the tile.
@@ -229,7 +240,6 @@ impl Painter {
 
     /// The part of a pixel that the caster hides from a point of the light's unit disc.
     fn coverage(&mut self, middle: DVec2, light: DVec2) -> f64 {
-        let (mut spare, mut inside) = (Vec::new(), Vec::new());
         let mut double_area = self.whole / TAU * 2.0;
         for circles in &self.near {
             let shade = |circle: &Circle| {
@@ -247,10 +257,11 @@ impl Painter {
                 &self.edges,
                 middle - 0.5,
                 middle + 0.5,
-                &mut spare,
-                &mut inside,
+                &mut self.spare,
+                &mut self.clipped,
             );
-            double_area += inside
+            double_area += self
+                .clipped
                 .iter()
                 .map(|edge| edge.double_area(middle))
                 .sum::<f64>();

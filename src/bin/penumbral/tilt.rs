@@ -2,7 +2,7 @@
 //! pixels and the penumbra map, against the closed form at points.
 
 use penumbral::lab::{Card, DiscLight, Errors, Family, Kernel, PenumbraMap, Region};
-use penumbral::{Grid, Image, Light, PixelOptions, Pose, Result, Shape, TiltedShadow};
+use penumbral::{Grid, Image, Light, PixelOptions, Pose, Result, Scratch, Shape, TiltedShadow};
 
 /// The card's half side, its middle's height, and the light.
 const HALF: f64 = 24.0;
@@ -90,11 +90,17 @@ impl Turned {
     }
 
     /// The card's densities.
-    pub(crate) fn draw(&self, method: Method, densities: &mut [f32]) -> Result<()> {
+    pub(crate) fn draw(
+        &self,
+        method: Method,
+        densities: &mut [f32],
+        scratch: &mut Scratch,
+    ) -> Result<()> {
         match method {
             Method::ClosedForm => {
+                let options = PixelOptions::default();
                 self.shadow
-                    .fill_f32(&self.grid, densities, &PixelOptions::default())
+                    .fill_f32(&self.grid, densities, &options, scratch)
             }
             Method::PenumbraMap => {
                 let light = DiscLight {

@@ -6,7 +6,7 @@ use penumbral::lab::{
     DepthMap, Errors, Family, Kernel, MonteCarlo, PenumbraMap, Region, ScanLine, ShadowVolume,
     Technique, ZBuffer,
 };
-use penumbral::{FillRule, Grid, Light, Result, Shadow, Shape};
+use penumbral::{FillRule, Grid, Light, Result, Scratch, Shadow, Shape};
 
 use crate::tilt::{Method, Turned};
 
@@ -244,9 +244,9 @@ fn polygon(rings: &[Vec<[f64; 2]>]) -> Result<Shape> {
 /// What is drawn of the card turned by so many degrees.
 fn turned(degrees: f64) -> Result<Vec<Own>> {
     let card = Turned::by(degrees)?;
-    let mut densities = vec![0.0; card.pixels()];
+    let (mut densities, mut scratch) = (vec![0.0; card.pixels()], Scratch::new());
     let own = |method: Method| {
-        card.draw(method, &mut densities)?;
+        card.draw(method, &mut densities, &mut scratch)?;
         Ok(Own {
             method: method.name(),
             family: method.family(),

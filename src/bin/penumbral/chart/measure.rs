@@ -238,12 +238,13 @@ fn least_time(
 /// The card that turns, by what can draw it: shadows without one penumbra radius are not for techniques.
 pub(crate) fn tilted(degrees: &[f64]) -> Result<Vec<Row>, Failure> {
     let mut rows = Vec::new();
+    let mut scratch = Scratch::new();
     for degrees in degrees {
         let card = Turned::by(*degrees).map_err(|error| error.to_string())?;
         let mut densities = vec![0.0; card.pixels()];
         for method in tilt::Method::ALL {
             let mut draw = || {
-                let drawn = card.draw(method, &mut densities);
+                let drawn = card.draw(method, &mut densities, &mut scratch);
                 black_box(&densities);
                 drawn.map_err(|error| format!("{}: {error}", method.name()))
             };
