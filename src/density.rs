@@ -114,7 +114,7 @@ fn draw_part(
     sink: &mut dyn Sink,
 ) {
     let per_unit = on.pixels_per_unit();
-    let pixels = plan::Target::Pixels { per_unit };
+    let pixels = plan::Target::Pixels(*on);
     let method = options
         .method
         .unwrap_or_else(|| plan::choose(shadow, options.tolerance, pixels).method);

@@ -8,6 +8,7 @@ use core::fmt;
 use core::str::FromStr;
 
 pub use self::skip::{Skip, skip};
+use crate::grid::Grid;
 use crate::shadow::Shadow;
 use crate::tolerance::Tolerance;
 
@@ -31,11 +32,8 @@ pub enum Method {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Target {
-    /// A grid of pixels.
-    Pixels {
-        /// Pixels a scene unit.
-        per_unit: f64,
-    },
+    /// The pixels of a grid: their size counts, not where they are.
+    Pixels(Grid),
     /// Triangles.
     Triangles,
 }
@@ -93,7 +91,7 @@ pub fn candidates(
     let levels = tolerance.as_levels();
     let all = match target {
         Target::Triangles => [Some(mesh::candidate(shadow, levels)), None, None, None],
-        Target::Pixels { per_unit } => pixels::candidates(shadow, per_unit, levels),
+        Target::Pixels(grid) => pixels::candidates(shadow, grid.pixels_per_unit(), levels),
     };
     all.into_iter().flatten()
 }
@@ -203,7 +201,8 @@ mod tests {
     #[test]
     fn the_cheapest_that_keeps_the_tolerance_is_chosen() {
         let card = Shape::rounded_rect(10.0, 10.0, 100.0, 60.0, 8.0).unwrap();
-        let pixels = Target::Pixels { per_unit: 1.0 };
+        let grid = Grid::new([0.0, 0.0], [240, 160], 1.0).unwrap();
+        let pixels = Target::Pixels(grid);
         for (shape, radius, levels, expected) in [
             (&card, 8.0, 1.0, Method::NinePatch),
             (&card, 8.0, 0.25, Method::Direct),

@@ -54,9 +54,7 @@ fn all_keep_their_tolerance(case: fn(usize) -> Case, count: usize) {
         }
         for levels in tolerances {
             let tolerance = Tolerance::levels(levels).unwrap();
-            let target = Target::Pixels {
-                per_unit: case.grid.pixels_per_unit(),
-            };
+            let target = Target::Pixels(case.grid);
             let chosen = plan::choose(&case.shadow, tolerance, target).method;
             let error = worst_of(&draw(None, tolerance), &exact);
             let what = format!("auto ({chosen}), tolerance {levels}");

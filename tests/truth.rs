@@ -338,7 +338,7 @@ fn the_plans_choice_keeps_the_tolerance_on_random_shadows() {
         draw(None, &mut got);
         let error = |(a, b): (&f32, &f32)| f64::from((a - b).abs()) * 255.0;
         let worst = got.iter().zip(&exact).map(error).fold(0.0, f64::max);
-        let target = Target::Pixels { per_unit: 1.0 };
+        let target = Target::Pixels(grid);
         let chosen = choose(&shadow, Tolerance::levels(levels).unwrap(), target).method;
         let words = format!("scene {scene}: {chosen}, r {radius}, {worst} of {levels} levels");
         assert!(worst <= f64::from(levels), "{words}");

@@ -91,16 +91,14 @@ fn level(
     if let Some(skip) = plan::skip(&shadow, grid, &PixelOptions::default(), opacity)? {
         let _ = writeln!(text, "  skipped {skip}");
     } else {
-        methods(&shadow, scene, text);
+        methods(&shadow, grid, text);
     }
     Ok(())
 }
 
 /// The method that the plan chooses, and the others.
-fn methods(shadow: &Shadow, scene: &Scene, text: &mut String) {
-    let pixels = Target::Pixels {
-        per_unit: f64::from(scene.scale()),
-    };
+fn methods(shadow: &Shadow, grid: &Grid, text: &mut String) {
+    let pixels = Target::Pixels(*grid);
     let tolerance = Tolerance::default();
     let choice = choose(shadow, tolerance, pixels);
     let _ = writeln!(text, "  method  {}: {}", choice.method, choice.why);

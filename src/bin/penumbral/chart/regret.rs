@@ -52,7 +52,7 @@ pub(crate) fn measure(drawings: &[Drawing], quick: bool) -> Result<Vec<Trial>, F
 
 fn shadow(drawing: &Drawing, part: &Part, tolerance: Tolerance) -> Result<Vec<Trial>, Failure> {
     let per_unit = part.grid.pixels_per_unit();
-    let target = Target::Pixels { per_unit };
+    let target = Target::Pixels(part.grid);
     let choice = plan::choose(&part.shadow, tolerance, target);
     let candidates = plan::candidates(&part.shadow, tolerance, target);
     let mut densities = vec![0.0; part.exact.len()];
