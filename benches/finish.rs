@@ -39,10 +39,10 @@ fn time(canvas: &mut Canvas, mesh: &RimMesh, lighting: &Lighting, model: Shading
 fn shading(criterion: &mut Criterion) {
     criterion.bench_function("rim mesh, 24 steps", |bencher| bencher.iter(|| mesh(24)));
     let mut canvas = Canvas::new(&Grid::new([0.0, 0.0], [480, 360], 2.0).unwrap());
-    let steps = mesh(8);
+    let (steps, lamp) = (mesh(8), lighting(20.0));
     for &model in ShadingModel::ALL {
         criterion.bench_function(&format!("rim, {}", model.name()), |bencher| {
-            bencher.iter(|| canvas.draw(&steps, &lighting(20.0), model));
+            bencher.iter(|| canvas.draw(&steps, &lamp, model));
         });
     }
     for (radius, what) in [(20.0, "a lamp"), (260.0, "a wide disc")] {
