@@ -16,7 +16,7 @@
 //! | `scan_line.rs` | [`ScanLine`]: projected edges crossed along scan lines | Appel 1968 |
 //! | `shadow_volume.rs` | [`ShadowVolume`]: umbra and penumbra volumes of a polygonal light | Crow 1977; Nishita & Nakamae 1983 |
 //! | `tangent.rs` | [`Tangent`]: the classical mesh between two rings of tangents | US 9,639,976 |
-//! | `stage.rs`, `image.rs`, `plane.rs`, `view.rs`, `rays.rs` | what they share: casters in space, images, blurred pixels, outlines in pixels, samples | |
+//! | `stage.rs`, `card.rs`, `plane.rs`, `view.rs`, `rays.rs` | what they share: casters in space, images, blurred pixels, outlines in pixels, samples | |
 
 mod box3;
 mod card;

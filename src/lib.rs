@@ -69,6 +69,7 @@
 //! | `scratch.rs`, `error.rs`, `limits.rs` | [`Scratch`], [`Error`], [`Limits`] |
 //! | `lab.rs`, `lab/` | `lab`: other ways to draw a shadow, to be measured against, one a file |
 //! | `finish.rs`, `finish/` | `finish`: rims and their shading, a model a file; detail on what is flat |
+//! | `apart.rs` | boxes that overlap, in groups apart from each other |
 //! | `scan.rs` | the pixels of a triangle, row by row |
 //! | `bin/penumbral` | the command line |
 //!

@@ -1,4 +1,4 @@
-//! Scene: surfaces over a ground, under one light.
+//! Scene: surfaces over a ground, under one or more lights.
 
 mod group;
 #[cfg(feature = "scene")]
@@ -15,7 +15,7 @@ use crate::grid::{Grid, LEAST_SCALE, MOST_SCALE};
 use crate::light::Light;
 use crate::tone::{Color, Tone};
 
-/// A canvas at elevation 0, the ground, with surfaces above it and a light over all.
+/// A canvas at elevation 0, the ground, with surfaces above it and one or more lights over all.
 ///
 /// ```
 /// use penumbral::{Color, Light, Scene, Shape, Surface};

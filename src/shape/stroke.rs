@@ -13,8 +13,8 @@ use crate::error::{self, Error, Result};
 use crate::outline::{Winding, resolve_loops};
 use crate::path::{FillRule, Path, Segment};
 
-/// How far from a curve of a stroke its lines may be, in scene units, and over the stroke's extent where that is more:
-/// strokes are computed in `f32`.
+/// How far from a curve of a stroke its lines may be, in scene units, and over the larger side of the path's box, without the stroke's
+/// width, where that is more: strokes are computed in `f32`.
 const FLATNESS: f64 = 5e-4;
 const RELATIVE_FLATNESS: f64 = 1e-6;
 
@@ -92,7 +92,8 @@ impl Stroke {
 }
 
 impl Shape {
-    /// What a pen draws along a path, open contours as well as closed ones. Curves become lines within 0.0005 scene units.
+    /// What a pen draws along a path, open contours as well as closed ones. Curves become lines within 0.0005 scene units, or
+    /// a millionth of the larger side of the path's box where that is more.
     ///
     /// # Errors
     /// A path without segments or that draws nothing, a number that is not finite or passes
