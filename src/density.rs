@@ -20,6 +20,7 @@ pub(crate) mod rounded;
 pub(crate) mod rows;
 pub(crate) mod runs;
 mod sampling;
+mod sweep;
 pub(crate) mod tiles;
 pub(crate) mod tilted;
 

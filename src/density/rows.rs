@@ -28,6 +28,7 @@ use glam::DVec2;
 
 use super::Sink;
 use super::lanes::{LANES, lanes};
+use super::sweep::Sweep;
 use crate::outline::Edge;
 use chains::Passing;
 use entries::{ALL, Entry, Maker, UNIT, cluster, density};
@@ -53,9 +54,7 @@ enum Kind {
 #[derive(Debug, Default)]
 pub(crate) struct Rows {
     pieces: Vec<Piece>,
-    /// How many pieces have been reached, and those of them that have not been left behind.
-    reached: usize,
-    active: Vec<u32>,
+    sweep: Sweep,
     entries: Vec<Entry>,
     /// The entries by their first column.
     order: Vec<u32>,
@@ -98,8 +97,7 @@ impl Rows {
 
     /// Back to the top.
     pub(crate) fn rewind(&mut self) {
-        self.reached = 0;
-        self.active.clear();
+        self.sweep.rewind();
         self.still_until = f64::NEG_INFINITY;
     }
 
@@ -118,18 +116,12 @@ impl Rows {
     ) {
         let reach = lattice.window.reach() + points.height();
         let pieces = &self.pieces;
-        while let Some(piece) = pieces.get(self.reached).filter(|p| p.low < y + reach) {
-            if piece.high > y - reach {
-                self.active.push(self.reached as u32);
-            }
-            self.reached += 1;
-        }
-        self.active
-            .retain(|&index| pieces[index as usize].high > y - reach);
+        self.sweep
+            .go_to(pieces, [y - reach, y + reach], |p| [p.low, p.high]);
         self.entries.clear();
         self.before = 0;
         self.y = y;
-        let next = pieces.get(self.reached).map_or(f64::INFINITY, |p| p.low);
+        let next = self.sweep.ahead(pieces).map_or(f64::INFINITY, |p| p.low);
         let mut still_until = next - reach;
         // A piece that passes all that a pixel averages over is seen otherwise than one that does not.
         let all = points.wide.map_or(reach, |wide| wide.half + wide.radius);
@@ -140,7 +132,7 @@ impl Rows {
             entries: &mut self.entries,
             before: &mut self.before,
         };
-        for &index in &self.active {
+        for &index in self.sweep.active() {
             let piece = &pieces[index as usize];
             let still = piece.is_upright() && piece.low <= y - all;
             still_until = still_until.min(if still {

@@ -14,6 +14,7 @@ use glam::DVec2;
 
 use super::lanes::LANES;
 use super::rows::{self, arc_chord, each_line, half_discs, line_at};
+use super::sweep::Sweep;
 use crate::outline::Edge;
 
 /// Samples along a tile's sides.
@@ -71,8 +72,7 @@ type Parts = [usize; 4];
 pub(crate) struct Tiles {
     /// From the top down.
     pieces: Vec<Piece>,
-    /// Those that a row of tiles may meet.
-    active: Vec<u32>,
+    sweep: Sweep,
     /// What pieces cut of the discs of each tile, place by place.
     cut: Vec<[f32; LANES]>,
     /// What changes from tile to tile of what lies beside, row by row of samples.
@@ -189,27 +189,19 @@ impl Tiles {
         let places = Places::new(offsets, step);
         let [columns, rows] = lattice.size;
         let tiles = columns / SIDE;
-        self.active.clear();
-        let mut reached = 0;
+        self.sweep.rewind();
         for row in 0..rows / SIDE {
             let top = (row * SIDE) as f64 * step;
             let middle = top + places.reach();
             let reach = 1.0 + places.reach();
-            while let Some(piece) = self.pieces.get(reached).filter(|p| p.low < middle + reach) {
-                if piece.high > middle - reach {
-                    self.active.push(reached as u32);
-                }
-                reached += 1;
-            }
-            let pieces = &self.pieces;
-            self.active
-                .retain(|&index| pieces[index as usize].high > middle - reach);
+            let reached = [middle - reach, middle + reach];
+            self.sweep.go_to(&self.pieces, reached, |p| [p.low, p.high]);
             let wanted = wanted.map(|wanted| &wanted[row * tiles..][..tiles]);
             if wanted.is_some_and(|wanted| !wanted.contains(&true)) {
                 continue;
             }
             let rows = row * SIDE * columns..(row + 1) * SIDE * columns;
-            if self.active.is_empty() {
+            if self.sweep.active().is_empty() {
                 for densities in &mut densities {
                     densities[rows.clone()].fill(0.0);
                 }
@@ -242,7 +234,7 @@ impl Tiles {
     ) {
         let Self {
             pieces,
-            active,
+            sweep,
             cut,
             beside,
             inside,
@@ -265,7 +257,7 @@ impl Tiles {
         let downs = places.downs.each_ref().map(load);
         let zero = f32x16::splat(simd, 0.0);
         let (mut rows, mut units) = ([[0.0; LANES]; N], [[0; LANES]; N]);
-        for &index in &*active {
+        for &index in sweep.active() {
             let piece = &pieces[index as usize];
             let [first, enters, leaves, last] = piece.parts(top, places, tiles);
             let along = piece.along.as_vec2().to_array();

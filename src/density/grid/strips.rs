@@ -8,6 +8,7 @@ use fearless_simd::{Simd, SimdBase};
 use glam::DVec2;
 
 use crate::density::lanes::{LANES, lanes};
+use crate::density::sweep::Sweep;
 
 /// Cells that are taken at once.
 pub(super) const BLOCK: usize = LANES;
@@ -22,9 +23,7 @@ pub(super) const QUADS: u64 = (1 << (BLOCK / QUAD)) - 1;
 #[derive(Debug, Default)]
 pub(crate) struct Strips {
     lines: Vec<StripLine>,
-    /// How many lines have been reached, and those of them that have not been left behind.
-    reached: usize,
-    active: Vec<u32>,
+    sweep: Sweep,
     /// The steps that a strip's height is cut into, and their number as a cell's whole area.
     full: f64,
     left: f64,
@@ -53,8 +52,7 @@ impl Strips {
     /// Begins an outline seen from column `left` on, `blocks` blocks wide. `full` is the number of steps.
     pub(super) fn begin(&mut self, left: i64, blocks: usize, full: f64) {
         self.lines.clear();
-        self.active.clear();
-        self.reached = 0;
+        self.sweep.rewind();
         self.left = left as f64;
         self.full = full;
         self.deltas.clear();
@@ -102,15 +100,9 @@ impl Strips {
         marks: &mut [u64],
     ) {
         let strip = strip as f64;
-        while let Some(line) = self.lines.get(self.reached).filter(|l| l.top < strip + 1.0) {
-            if line.bottom > strip {
-                self.active.push(self.reached as u32);
-            }
-            self.reached += 1;
-        }
-        let lines = &self.lines;
-        self.active
-            .retain(|&index| lines[index as usize].bottom > strip);
+        let height = [strip, strip + 1.0];
+        self.sweep
+            .go_to(&self.lines, height, |line| [line.top, line.bottom]);
         let mut cells = Cells {
             start: self.left,
             deltas: &mut self.deltas,
@@ -118,7 +110,7 @@ impl Strips {
             marks,
             cover: 0,
         };
-        for &index in &self.active {
+        for &index in self.sweep.active() {
             let line = &self.lines[index as usize];
             let (top, bottom) = (line.top.max(strip), line.bottom.min(strip + 1.0));
             let (least, most) = (line.from.min(line.to), line.from.max(line.to));

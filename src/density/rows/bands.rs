@@ -16,6 +16,7 @@ use super::stroke::Stroke;
 use super::{Lattice, Points, STRETCH, Window};
 use crate::density::Sink;
 use crate::density::lanes::LANES;
+use crate::density::sweep::Sweep;
 use crate::outline::Edge;
 
 /// Rows of a band, and columns of a tile.
@@ -54,9 +55,7 @@ struct Entry {
 #[derive(Debug, Default)]
 pub(crate) struct Bands {
     pieces: Vec<Piece>,
-    /// How many pieces have been reached, and those of them that have not been left behind.
-    reached: usize,
-    active: Vec<u32>,
+    sweep: Sweep,
     /// By their first column.
     entries: Vec<Entry>,
     /// Steps left of the columns that are drawn.
@@ -100,8 +99,7 @@ impl Bands {
     /// Takes the outline's edges, in penumbra radii.
     pub(crate) fn load(&mut self, edges: impl Iterator<Item = Edge>) {
         pieces::cut(edges, Window::Disc, None, &mut self.pieces);
-        self.reached = 0;
-        self.active.clear();
+        self.sweep.rewind();
         self.still_until = f64::NEG_INFINITY;
     }
 
@@ -141,24 +139,15 @@ impl Bands {
         let (height, spread) = (points.height(), points.width() * lattice.pitch);
         let (bottom, reach) = (top + HEIGHT * lattice.pitch, 1.0 + height);
         let pieces = &self.pieces;
-        while let Some(piece) = pieces
-            .get(self.reached)
-            .filter(|piece| piece.low < bottom + reach)
-        {
-            if piece.high > top - reach {
-                self.active.push(self.reached as u32);
-            }
-            self.reached += 1;
-        }
-        self.active
-            .retain(|&index| pieces[index as usize].high > top - reach);
+        self.sweep
+            .go_to(pieces, [top - reach, bottom + reach], |p| [p.low, p.high]);
         self.entries.clear();
         self.before = [0; SIDE];
         self.top = top;
-        let next = pieces.get(self.reached).map_or(f64::INFINITY, |p| p.low);
+        let next = self.sweep.ahead(pieces).map_or(f64::INFINITY, |p| p.low);
         self.still_until = next - reach;
         let down = down(simd, lattice.pitch);
-        for &index in &self.active {
+        for &index in self.sweep.active() {
             let piece = &pieces[index as usize];
             let still = piece.is_upright() && piece.low <= top - reach;
             self.still_until = self.still_until.min(if still {
