@@ -174,7 +174,7 @@ fn fill_rows<S: Simd>(
         }
         for columns in wanted.iter() {
             let (number, origin) = (drawing.number(line), drawing.frame.first[0]);
-            rows.give(number, columns.clone(), origin, sink);
+            rows.give(number, columns, origin, sink);
         }
     }
 }

@@ -203,7 +203,7 @@ pub(crate) fn fill<S: Simd>(
                     }
                 }
             }
-            pixel_rows.give(number, columns.clone(), origin, sink);
+            pixel_rows.give(number, &columns, origin, sink);
         }
     }
 }

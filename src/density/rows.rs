@@ -13,12 +13,13 @@ mod kernels;
 mod pieces;
 mod points;
 mod seen;
+mod spans;
 mod stroke;
 
 pub(crate) use arcs::{Power, circle};
 pub(crate) use bands::{BAND, Bands, to_tiles};
 pub(crate) use kernels::{Wide, half_disc, half_discs, line_at, turns, whole_disc};
-pub(crate) use pieces::{ERROR, arc_chord, each_line, sort};
+pub(crate) use pieces::{ERROR, Slant, arc_chord, each_line, sort};
 pub(crate) use points::{Line, Points, Window};
 
 use core::ops::Range;
@@ -31,24 +32,11 @@ use super::lanes::{LANES, lanes};
 use super::sweep::Sweep;
 use crate::outline::Edge;
 use chains::Passing;
-use entries::{ALL, Entry, Maker, UNIT, cluster, density};
+use entries::{ALL, Entry, Maker, UNIT, cluster};
 use pieces::Piece;
 use seen::View;
+use spans::Spans;
 use stroke::{RowForm, Stroke};
-
-/// A part of a row that was computed.
-#[derive(Debug, Clone)]
-struct Span {
-    columns: Range<i64>,
-    kind: Kind,
-}
-
-#[derive(Debug, Clone, Copy)]
-enum Kind {
-    Constant(f32),
-    /// Where its values begin.
-    Values(usize),
-}
 
 /// Draws rows of one outline, from top to bottom.
 #[derive(Debug, Default)]
@@ -63,8 +51,7 @@ pub(crate) struct Rows {
     y: f64,
     /// Where the entries of a cluster end, and their steps.
     steps: Vec<(i64, i64)>,
-    spans: Vec<Span>,
-    values: Vec<f32>,
+    spans: Spans<1>,
     /// Up to where rows are the same as the last.
     still_until: f64,
 }
@@ -165,7 +152,6 @@ impl Rows {
     /// Forgets what was computed.
     pub(crate) fn clear(&mut self) {
         self.spans.clear();
-        self.values.clear();
     }
 
     /// Computes the row over `columns`, right of what was computed of it before.
@@ -192,24 +178,14 @@ impl Rows {
             let steps = entries.map(|&index| self.entries[index as usize].step);
             let after = base + steps.sum::<i64>();
             let (from, to) = (first.clamp(at, columns.end), end.clamp(at, columns.end));
-            self.push_constant(at..from, base);
+            self.spans.push_constant(at..from, [base]);
             if to > from {
                 self.cluster(simd, start..next, from..to, base, lattice, points);
             }
             at = to;
             base = after;
         }
-        self.push_constant(at..columns.end, base);
-    }
-
-    fn push_constant(&mut self, columns: Range<i64>, steps: i64) {
-        let density = density(steps);
-        if !columns.is_empty() && density > 0.0 {
-            self.spans.push(Span {
-                columns,
-                kind: Kind::Constant(density),
-            });
-        }
+        self.spans.push_constant(at..columns.end, [base]);
     }
 
     /// Computes the densities of `columns`, all within the entries' cluster.
@@ -224,7 +200,8 @@ impl Rows {
     ) {
         // Whole strides of an entry may begin before the columns and end after them.
         let stride = LANES as i64;
-        let start = self.values.len();
+        let computed = &mut self.spans.values;
+        let start = computed.len();
         let left = columns.start - stride;
         let count = columns.end + stride - left;
         // Steps are summed before they are rounded: what lies left of the columns that are drawn changes nothing.
@@ -239,12 +216,12 @@ impl Rows {
         for &(end, step) in &self.steps {
             at = (end - left).clamp(at, count);
             let end = start + at as usize;
-            self.values.resize(end, (sum as f64 / UNIT) as f32);
+            computed.resize(end, (sum as f64 / UNIT) as f32);
             sum += step;
         }
         let end = start + count as usize;
-        self.values.resize(end, (sum as f64 / UNIT) as f32);
-        let values = &mut self.values[start..];
+        computed.resize(end, (sum as f64 / UNIT) as f32);
+        let values = &mut computed[start..];
         for &index in &self.order[cluster] {
             let entry = &self.entries[index as usize];
             let skipped = (columns.start - entry.first).max(0) / stride;
@@ -309,35 +286,12 @@ impl Rows {
                 }
             },
         );
-        self.spans.push(Span {
-            columns,
-            kind: Kind::Values(start + LANES),
-        });
+        self.spans.push_values(columns, start + LANES);
     }
 
     /// Gives `sink` what was computed of row `y` within `columns`, counted from `origin`.
     #[inline(always)]
-    pub(crate) fn give(&self, y: u32, columns: Range<i64>, origin: i64, sink: &mut dyn Sink) {
-        for span in &self.spans {
-            let start = span.columns.start.max(columns.start);
-            let end = span.columns.end.min(columns.end);
-            if start >= end {
-                continue;
-            }
-            let first = (start - origin) as u32;
-            match span.kind {
-                Kind::Constant(density) => {
-                    sink.constant(y..y + 1, first..(end - origin) as u32, density);
-                }
-                Kind::Values(place) => {
-                    let place = place + (start - span.columns.start) as usize;
-                    sink.values(
-                        y..y + 1,
-                        first..(end - origin) as u32,
-                        &self.values[place..],
-                    );
-                }
-            }
-        }
+    pub(crate) fn give(&self, y: u32, columns: &Range<i64>, origin: i64, sink: &mut dyn Sink) {
+        self.spans.give(0, y, columns, origin, sink);
     }
 }

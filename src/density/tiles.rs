@@ -13,7 +13,7 @@ use fearless_simd::{Simd, SimdBase, SimdCombine, SimdFloat, f32x4, f32x8, f32x16
 use glam::DVec2;
 
 use super::lanes::LANES;
-use super::rows::{self, arc_chord, each_line, half_discs, line_at};
+use super::rows::{self, Slant, arc_chord, each_line, half_discs, line_at};
 use super::sweep::Sweep;
 use crate::outline::Edge;
 
@@ -56,11 +56,7 @@ struct Piece {
     high: f64,
     from: DVec2,
     to: DVec2,
-    along: DVec2,
-    length: f64,
-    /// The x that it gains with y, and half of the chord that it cuts from the unit disc's row.
-    slope: f64,
-    width: f64,
+    slant: Slant,
 }
 
 /// The tiles of a row from which a piece is seen as one thing and another: right of all discs before the first, cut from the first to
@@ -147,22 +143,14 @@ impl Tiles {
         let place = |point: DVec2| (point - lattice.corner) * scale;
         self.pieces.clear();
         let mut push = |from: DVec2, to: DVec2| {
-            // A level line adds nothing: its ends' neighbours tell of it.
-            if from.y == to.y {
-                return;
-            }
-            let length = (to - from).length();
-            let along = (to - from) / length;
-            self.pieces.push(Piece {
-                low: from.y.min(to.y),
-                high: from.y.max(to.y),
-                from,
-                to,
-                along,
-                length,
-                slope: along.x / along.y,
-                width: 1.0 / along.y.abs(),
-            });
+            self.pieces
+                .extend(Slant::between(from, to).map(|slant| Piece {
+                    low: from.y.min(to.y),
+                    high: from.y.max(to.y),
+                    from,
+                    to,
+                    slant,
+                }));
         };
         for edge in edges {
             let edge = edge.mapped(scale, place);
@@ -260,8 +248,8 @@ impl Tiles {
         for &index in sweep.active() {
             let piece = &pieces[index as usize];
             let [first, enters, leaves, last] = piece.parts(top, places, tiles);
-            let along = piece.along.as_vec2().to_array();
-            let length = piece.length as f32;
+            let along = piece.slant.along.as_vec2().to_array();
+            let length = piece.slant.length as f32;
             let (mut halves, mut distance_at, mut start_at) =
                 ([[zero; 2]; N], [zero; N], [zero; N]);
             let ends = [piece.from.y, piece.to.y].map(|y| (y - middle) as f32);
@@ -304,7 +292,10 @@ impl Tiles {
                     }
                     let x = ((tile * SIDE) as f64 + REACH) * step;
                     let seen = piece.from - DVec2::new(x, middle);
-                    let (across, ahead) = (seen.perp_dot(piece.along), seen.dot(piece.along));
+                    let (across, ahead) = (
+                        seen.perp_dot(piece.slant.along),
+                        seen.dot(piece.slant.along),
+                    );
                     for place in 0..N {
                         let distance = distance_at[place] + across as f32;
                         let start = start_at[place] + ahead as f32;
@@ -364,21 +355,22 @@ impl Piece {
     #[inline(always)]
     fn parts<const N: usize>(&self, top: f64, places: &Places<N>, tiles: usize) -> Parts {
         let (step, spread) = (places.step, places.reach());
+        let slant = &self.slant;
         let middle = top + spread;
         let (low, high) = (self.low - middle, self.high - middle);
         // Where the part that discs reach is, and half of the chord at the y nearest to theirs.
         let reach = 1.0 + spread;
         let (left_end, right_end) = (self.from.x.min(self.to.x), self.from.x.max(self.to.x));
         let at = |y: f64| {
-            let x = self.from.x + (middle + y - self.from.y) * self.slope;
+            let x = self.from.x + (middle + y - self.from.y) * slant.slope;
             x.max(left_end).min(right_end)
         };
         let (a, b) = (at(low.max(-reach)), at(high.min(reach)));
         let beyond = (low.max(-high) - spread).max(0.0);
         let half = ((1.0 - beyond) * (1.0 + beyond)).max(0.0).sqrt();
         // A disc farther than 1 from the line does not meet it.
-        let crossing = self.from.x + (middle - self.from.y) * self.slope;
-        let width = (1.0 + spread * self.along.x.abs()) * self.width;
+        let crossing = self.from.x + (middle - self.from.y) * slant.slope;
+        let width = (1.0 + spread * slant.along.x.abs()) * slant.width;
         let left = (a.min(b) - half).max(crossing - width);
         let right = (a.max(b) + half).min(crossing + width);
         // Where both ends are in all discs.

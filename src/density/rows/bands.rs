@@ -12,6 +12,7 @@ use super::entries::{self, UNIT};
 use super::kernels::half_discs;
 use super::pieces::{self, Piece};
 use super::seen::View;
+use super::spans::Spans;
 use super::stroke::Stroke;
 use super::{Lattice, Points, STRETCH, Window};
 use crate::density::Sink;
@@ -25,21 +26,6 @@ const SIDE: usize = 4;
 
 /// From a band's first row to its last, in pixels.
 const HEIGHT: f64 = (SIDE - 1) as f64;
-
-/// A part of a band that was computed.
-#[derive(Debug, Clone)]
-struct Span {
-    columns: Range<i64>,
-    kind: Kind,
-}
-
-#[derive(Debug, Clone, Copy)]
-enum Kind {
-    /// One for each row.
-    Constant([f32; SIDE]),
-    /// Where the values of the first row begin.
-    Values(usize),
-}
 
 /// What one piece of the outline does to a band.
 #[derive(Debug, Clone, Copy)]
@@ -65,9 +51,7 @@ pub(crate) struct Bands {
     steps: Vec<(i64, [i64; SIDE])>,
     /// The densities of a cluster, tile by tile.
     tiles: Vec<f32>,
-    spans: Vec<Span>,
-    /// Densities row by row.
-    values: Vec<f32>,
+    spans: Spans<SIDE>,
     /// Bands that end above it are the same as the last.
     still_until: f64,
 }
@@ -187,7 +171,6 @@ impl Bands {
     /// Forgets what was computed.
     pub(crate) fn clear(&mut self) {
         self.spans.clear();
-        self.values.clear();
     }
 
     /// Computes the band over `columns`, which are whole tiles, right of what was computed of it before.
@@ -217,24 +200,14 @@ impl Bands {
                 }
             }
             let (from, to) = (first.clamp(at, columns.end), end.clamp(at, columns.end));
-            self.push_constant(at..from, base);
+            self.spans.push_constant(at..from, base);
             if to > from {
                 self.cluster(simd, start..next, from..to, base, lattice, points);
             }
             at = to;
             base = after;
         }
-        self.push_constant(at..columns.end, base);
-    }
-
-    fn push_constant(&mut self, columns: Range<i64>, steps: [i64; SIDE]) {
-        let densities = steps.map(entries::density);
-        if !columns.is_empty() && densities.iter().any(|&density| density > 0.0) {
-            self.spans.push(Span {
-                columns,
-                kind: Kind::Constant(densities),
-            });
-        }
+        self.spans.push_constant(at..columns.end, base);
     }
 
     /// Computes the densities of `columns`, all within the entries' cluster.
@@ -302,17 +275,15 @@ impl Bands {
                 }
             }
         }
-        let start = self.values.len();
-        self.values.resize(start + SIDE * width + LANES, 0.0);
-        let values = &mut self.values[start..];
+        let values = &mut self.spans.values;
+        let start = values.len();
+        values.resize(start + SIDE * width + LANES, 0.0);
+        let values = &mut values[start..];
         simd.vectorize(
             #[inline(always)]
             || untile(simd, &self.tiles, width, values),
         );
-        self.spans.push(Span {
-            columns,
-            kind: Kind::Values(start),
-        });
+        self.spans.push_values(columns, start);
     }
 
     /// Puts what the entries' steps add up to into the tiles of a cluster.
@@ -368,26 +339,7 @@ impl Bands {
         origin: i64,
         sink: &mut dyn Sink,
     ) {
-        for span in &self.spans {
-            let start = span.columns.start.max(columns.start);
-            let end = span.columns.end.min(columns.end);
-            if start >= end {
-                continue;
-            }
-            let on_grid = (start - origin) as u32..(end - origin) as u32;
-            match span.kind {
-                Kind::Constant(densities) => {
-                    if densities[row] > 0.0 {
-                        sink.constant(y..y + 1, on_grid, densities[row]);
-                    }
-                }
-                Kind::Values(place) => {
-                    let width = (span.columns.end - span.columns.start) as usize;
-                    let place = place + row * width + (start - span.columns.start) as usize;
-                    sink.values(y..y + 1, on_grid, &self.values[place..]);
-                }
-            }
-        }
+        self.spans.give(row, y, columns, origin, sink);
     }
 }
 

@@ -88,7 +88,7 @@ impl Piece {
         // Twice 2 levels at most lie between an arc and the line that touches it: so many half heights of the profile.
         const BENT: f64 = 10.4;
         match self.form {
-            Form::Line { .. } => true,
+            Form::Line(_) => true,
             Form::Arc { radius, .. } => {
                 let squares = wide.half * wide.half + wide.radius * wide.radius;
                 radius * wide.half.max(wide.radius) >= BENT * squares

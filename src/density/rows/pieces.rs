@@ -24,13 +24,7 @@ pub(super) struct Piece {
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Form {
-    /// Its unit vector, its length, the x it gains with y, and half the chord that it cuts from the unit disc's row.
-    Line {
-        along: DVec2,
-        length: f64,
-        slope: f64,
-        width: f64,
-    },
+    Line(Slant),
     Arc {
         center: DVec2,
         radius: f64,
@@ -39,6 +33,34 @@ pub(super) enum Form {
         /// The area between it and its chord, over π.
         segment: f32,
     },
+}
+
+/// How a line runs that is not level.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Slant {
+    /// Its unit vector, and its length.
+    pub(crate) along: DVec2,
+    pub(crate) length: f64,
+    /// The x that it gains with y, and half of the chord that it cuts from the unit disc's row.
+    pub(crate) slope: f64,
+    pub(crate) width: f64,
+}
+
+impl Slant {
+    /// A level line has none, and adds nothing: its ends' neighbours tell of it.
+    pub(crate) fn between(from: DVec2, to: DVec2) -> Option<Self> {
+        if from.y == to.y {
+            return None;
+        }
+        let length = (to - from).length();
+        let along = (to - from) / length;
+        Some(Self {
+            along,
+            length,
+            slope: along.x / along.y,
+            width: 1.0 / along.y.abs(),
+        })
+    }
 }
 
 /// The area between an arc from one point to another and its chord, over π.
@@ -50,7 +72,7 @@ impl Form {
     /// An arc's centre and radius, its turn and its side.
     pub(super) fn circle(&self) -> Option<(DVec2, f64, [f64; 2])> {
         match *self {
-            Self::Line { .. } => None,
+            Self::Line(_) => None,
             Self::Arc {
                 center,
                 radius,
@@ -137,26 +159,15 @@ fn close(pieces: &mut Vec<Piece>, first: usize, wide: Option<&Wide>) {
 }
 
 fn push_line(from: DVec2, to: DVec2, pieces: &mut Vec<Piece>) {
-    // A level line adds nothing: its ends' neighbours tell of it.
-    if from.y == to.y {
-        return;
-    }
-    let length = (to - from).length();
-    let along = (to - from) / length;
-    pieces.push(Piece {
+    pieces.extend(Slant::between(from, to).map(|slant| Piece {
         low: from.y.min(to.y),
         high: from.y.max(to.y),
         from,
         to,
-        form: Form::Line {
-            along,
-            length,
-            slope: along.x / along.y,
-            width: 1.0 / along.y.abs(),
-        },
+        form: Form::Line(slant),
         chain: [from.y.min(to.y), from.y.max(to.y)],
         goes_on: false,
-    });
+    }));
 }
 
 /// Cuts an arc where it is level; where its whole half could be inside the disc, where it is upright too.
@@ -271,7 +282,7 @@ fn flatten(arc: &Arc, window: Window, error: f64, mut line: impl FnMut(DVec2, DV
 impl Piece {
     /// Whether it is a line straight up or down.
     pub(super) fn is_upright(&self) -> bool {
-        matches!(self.form, Form::Line { .. }) && self.from.x == self.to.x
+        matches!(self.form, Form::Line(_)) && self.from.x == self.to.x
     }
 
     /// This piece and the one after it as one, where they are of one circle and go on the same way.

@@ -8,7 +8,7 @@ use glam::DVec2;
 use super::Window;
 use super::arcs::{ArcEnd, Power, RowArc};
 use super::kernels::{LEAST_SPAN, Ramp, RowCut, RowLine, Wide, WideArc, WideLine};
-use super::pieces::{Form, Piece};
+use super::pieces::{Form, Piece, Slant};
 use super::stroke::RowForm;
 
 /// From where pieces are seen.
@@ -50,7 +50,7 @@ impl Piece {
     #[inline(always)]
     fn x_at(&self, y: f64) -> f64 {
         match self.form {
-            Form::Line { slope, .. } => self.from.x + (y - self.from.y) * slope,
+            Form::Line(Slant { slope, .. }) => self.from.x + (y - self.from.y) * slope,
             Form::Arc {
                 center,
                 radius,
@@ -75,14 +75,14 @@ impl Piece {
                 let nearest = (low - bottom).max(top - high).max(0.0);
                 (1.0 - nearest * nearest).sqrt()
             }
-            Form::Line { .. } => window.reach(),
+            Form::Line(_) => window.reach(),
         };
         let (mut left, mut right) = (a.min(b) - reach, a.max(b) + reach);
         if window == Window::Square {
             return [left, right];
         }
         match self.form {
-            Form::Line { slope, width, .. } => {
+            Form::Line(Slant { slope, width, .. }) => {
                 // A disc farther than 1 from the line does not meet it.
                 let [a, b] = [top, bottom].map(|y| self.from.x + (y - self.from.y) * slope);
                 left = left.max(a.min(b) - width);
@@ -123,15 +123,10 @@ impl Piece {
     pub(super) fn wide_extent(&self, y: f64, wide: &Wide) -> [f64; 2] {
         let reach = wide.half + wide.radius;
         match self.form {
-            Form::Line {
-                along,
-                slope,
-                width,
-                ..
-            } => {
-                let middle = self.from.x + (y - self.from.y) * slope;
-                let across = along.x.abs() + along.y.abs();
-                let reach = (wide.radius + wide.half * across) * width;
+            Form::Line(slant) => {
+                let middle = self.from.x + (y - self.from.y) * slant.slope;
+                let across = slant.along.x.abs() + slant.along.y.abs();
+                let reach = (wide.radius + wide.half * across) * slant.width;
                 [middle - reach, middle + reach]
             }
             Form::Arc {
@@ -157,7 +152,7 @@ impl Piece {
     pub(super) fn seen_widely<S: Simd>(&self, view: &View<S>, wide: &Wide) -> RowForm<S> {
         let (half, radius) = (wide.half as f32, wide.radius as f32);
         match self.form {
-            Form::Line { along, .. } => {
+            Form::Line(Slant { along, .. }) => {
                 let [a, b] = [along.x, along.y].map(|part| part.abs() as f32 * half);
                 let distance = (self.from - view.origin).perp_dot(along);
                 RowForm::WideLine(WideLine {
@@ -217,7 +212,7 @@ impl Piece {
         let (from, to) = (self.from - origin, self.to - origin);
         let passes = self.low <= origin.y - 1.0 && self.high >= bottom + 1.0;
         match self.form {
-            Form::Line { along, length, .. } => {
+            Form::Line(Slant { along, length, .. }) => {
                 let mut distance = view.ramp(from.perp_dot(along), along.y);
                 distance.start += down * along.x as f32;
                 if passes {
