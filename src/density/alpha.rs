@@ -8,7 +8,7 @@ use std::sync::Arc;
 use glam::DVec2;
 use libm::{asin, sin};
 
-use super::{Sink, averaged_side, quadrature};
+use super::{Sink, averaged_side, quadrature, reached};
 use crate::grid::Grid;
 use crate::hidden::Hidden;
 use crate::image::{Image, Place};
@@ -55,12 +55,8 @@ impl AlphaShadow {
     pub(crate) fn fill(&self, grid: &Grid, hidden: Option<&Hidden>, sink: &mut dyn Sink) {
         let scale = grid.pixels_per_unit();
         let side = averaged_side(self.radius * scale);
-        let reach = self.radius * scale + side / 2.0;
-        let (min, max) = self.hull();
-        let (min, max) = (
-            min * scale - reach - grid.corner(),
-            max * scale + reach - grid.corner(),
-        );
+        let (min, max) = reached(self.hull(), self.radius, scale);
+        let (min, max) = (min - grid.corner(), max - grid.corner());
         let [columns, rows] = [0, 1].map(|axis| {
             let end = f64::from([grid.width(), grid.height()][axis]);
             let on_grid = |v: f64| v.clamp(0.0, end) as u32;

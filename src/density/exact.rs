@@ -10,7 +10,7 @@ use glam::DVec2;
 
 use super::area::settled;
 use super::frame::Frame;
-use super::{EXACT_SHARE, Sink, at_point, averaged_side, quadrature};
+use super::{EXACT_SHARE, Sink, at_point, averaged_side, quadrature, reach};
 use crate::grid::Grid;
 use crate::hidden::Hidden;
 use crate::outline::{self, Edge, clip_to_box};
@@ -37,13 +37,11 @@ pub(crate) fn fill(
         return;
     };
     let radius = shadow.radius() * scale;
-    let side = averaged_side(radius);
-    let reach = radius + side / 2.0;
-
+    let reach = reach(radius);
     let frame = Frame::new(bounds, reach, grid);
     let mut painter = Painter {
         radius,
-        side,
+        side: averaged_side(radius),
         reach,
         phase: frame.phase,
         first: frame.first,
@@ -237,8 +235,7 @@ mod tests {
         centers: impl Iterator<Item = DVec2> + Clone,
     ) -> f64 {
         let (mut scratch, mut sink) = (Scratch::new(), Nowhere);
-        let side = averaged_side(radius);
-        let reach = radius + side / 2.0;
+        let (side, reach) = (averaged_side(radius), reach(radius));
         let mut painter = Painter {
             radius,
             side,

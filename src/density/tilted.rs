@@ -9,6 +9,7 @@ use core::ops::Range;
 use glam::DVec2;
 
 use super::area::{of_line, settled};
+use super::frame::Frame;
 use super::{Sink, averaged_side, quadrature};
 use crate::grid::Grid;
 use crate::hidden::Hidden;
@@ -55,24 +56,16 @@ pub(crate) fn fill(
     scratch: &mut Scratch,
     sink: &mut dyn Sink,
 ) {
-    let Some((min, max)) = shadow.hull() else {
+    let Some(hull) = shadow.hull() else {
         return;
     };
-    let scale = grid.pixels_per_unit();
-    let base = (min * scale).floor() - 1.0;
-    let extent = max * scale + 1.0 - base;
-    let corner = grid.corner() - base;
-    let whole = corner.floor();
-    let [columns, rows] = [0, 1].map(|axis| {
-        let first = whole[axis] as i64;
-        let end = first + i64::from([grid.width(), grid.height()][axis]);
-        first.max(0)..end.min(extent[axis].ceil() as i64 + 1)
-    });
-    let first = [whole.x as i64, whole.y as i64];
+    // The hull holds the penumbra; what pixels average over beyond it is in the frame's spare ones.
+    let frame = Frame::new(hull, 0.0, grid);
+    let [columns, rows] = frame.pixels();
     if columns.is_empty() || rows.is_empty() {
         return;
     }
-    let place = |circle: &Circle| circle.placed(scale, base);
+    let place = |circle: &Circle| circle.placed(frame.scale, frame.base);
     let loops: Vec<Vec<Circle>> = shadow
         .loops
         .iter()
@@ -88,7 +81,7 @@ pub(crate) fn fill(
         }),
         loops,
         plane: shadow.plane.map(|circle| place(&circle)),
-        phase: corner - whole,
+        phase: frame.phase,
         near: Vec::new(),
         whole: 0.0,
         edges: scratch.take(),
@@ -108,9 +101,9 @@ pub(crate) fn fill(
                 continue;
             }
             for row in top.max(rows.start)..(top + TILE).min(rows.end) {
-                let y = (row - first[1]) as u32;
+                let y = (row - frame.first[1]) as u32;
                 for column in left.max(columns.start)..(left + TILE).min(columns.end) {
-                    let x = (column - first[0]) as u32;
+                    let x = (column - frame.first[0]) as u32;
                     if hidden.is_some_and(|hidden| hidden.hides(x, y)) {
                         continue;
                     }

@@ -18,7 +18,7 @@ use libm::{atan, atan2, sqrt};
 
 use super::view::View;
 use super::{Claim, Family, Parameter, Technique};
-use crate::density::square_average;
+use crate::density::{reach, square_average};
 use crate::error::{self, Result};
 use crate::grid::Grid;
 use crate::scratch::Scratch;
@@ -225,9 +225,8 @@ impl Technique for Irradiance {
         _: &mut Scratch,
     ) -> Result<()> {
         let view = View::new(shadow, grid, 0.02);
-        let (side, scale) = (view.side(), grid.pixels_per_unit());
-        let reach = view.radius + side / 2.0;
-        view.draw(grid, reach, densities, |center, _, lines| {
+        let scale = grid.pixels_per_unit();
+        view.draw(grid, reach(view.radius), densities, |center, _, lines| {
             let at = |point: DVec2| {
                 let scene = (point + grid.corner()) / scale;
                 self.hidden(lines.iter().copied(), point, view.radius, scene)

@@ -10,6 +10,7 @@ use libm::sqrt;
 use super::rays::{number, on_disc};
 use super::view::{View, holds, sides};
 use super::{Claim, Family, Parameter, Technique};
+use crate::density::{averaged_side, reach};
 use crate::error::{self, Result};
 use crate::grid::Grid;
 use crate::scratch::Scratch;
@@ -172,10 +173,8 @@ impl Technique for MonteCarlo {
         _: &mut Scratch,
     ) -> Result<()> {
         let view = View::new(shadow, grid, 0.02);
-        let side = view.side();
-        let reach = view.radius + side / 2.0;
-        view.draw(grid, reach, densities, |center, place, lines| {
-            let radius = view.radius;
+        let (radius, side) = (view.radius, averaged_side(view.radius));
+        view.draw(grid, reach(radius), densities, |center, place, lines| {
             self.trace(place + 1, center, radius, side, lines, |_| 1.0)
                 .density
         })

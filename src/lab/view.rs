@@ -2,7 +2,6 @@
 
 use glam::DVec2;
 
-use crate::density::averaged_side;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::outline::{Edge, Line, clip_to_box};
@@ -30,11 +29,6 @@ impl View {
                 .collect(),
             radius: shadow.radius() * scale,
         }
-    }
-
-    /// The side of the square over which a pixel is averaged.
-    pub(super) fn side(&self) -> f64 {
-        averaged_side(self.radius)
     }
 
     pub(super) fn lines(&self) -> impl Iterator<Item = (DVec2, DVec2)> {
