@@ -9,53 +9,84 @@ use libm::{cos, sin, sqrt};
 /// the pixel: each the smoother function of the two, as the disc or the pixel is the larger.
 pub(crate) const COVERAGE_RADIUS: f64 = 0.5;
 
-/// The positive node of the Gauss-Legendre rule with 2 points on -1 to 1, whose weights are 1.
-const GAUSS_2: f64 = 0.577_350_269_189_625_8;
-
-/// Nodes and weights of the Gauss-Legendre rules with 4, 8, 12 and 16 points on -1 to 1, the positive half (Abramowitz &
+/// The Gauss-Legendre rule of so many points, up to 9, 12 or 16: nodes and weights on -1 to 1, the half that is not negative (Abramowitz &
 /// Stegun 1964, table 25.4).
-const GAUSS_4: [(f64, f64); 2] = [
-    (0.339_981_043_584_856_3, 0.652_145_154_862_546_1),
-    (0.861_136_311_594_052_6, 0.347_854_845_137_453_86),
-];
-const GAUSS_8: [(f64, f64); 4] = [
-    (0.183_434_642_495_649_8, 0.362_683_783_378_362),
-    (0.525_532_409_916_329, 0.313_706_645_877_887_3),
-    (0.796_666_477_413_626_7, 0.222_381_034_453_374_48),
-    (0.960_289_856_497_536_2, 0.101_228_536_290_376_26),
-];
-const GAUSS_12: [(f64, f64); 6] = [
-    (0.125_233_408_511_468_9, 0.249_147_045_813_402_77),
-    (0.367_831_498_998_180_2, 0.233_492_536_538_354_8),
-    (0.587_317_954_286_617_5, 0.203_167_426_723_065_92),
-    (0.769_902_674_194_304_7, 0.160_078_328_543_346_23),
-    (0.904_117_256_370_474_9, 0.106_939_325_995_318_43),
-    (0.981_560_634_246_719_2, 0.047_175_336_386_511_83),
-];
+const fn rule(count: usize) -> &'static [(f64, f64)] {
+    match count {
+        1 => &[(0.0, 2.0)],
+        2 => &[(0.577_350_269_189_625_8, 1.0)],
+        3 => &[(0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)],
+        4 => &[
+            (0.339_981_043_584_856_3, 0.652_145_154_862_546_1),
+            (0.861_136_311_594_052_6, 0.347_854_845_137_453_86),
+        ],
+        5 => &[
+            (0.0, 0.568_888_888_888_888_9),
+            (0.538_469_310_105_683_1, 0.478_628_670_499_366_5),
+            (0.906_179_845_938_664, 0.236_926_885_056_189_1),
+        ],
+        6 => &[
+            (0.238_619_186_083_196_9, 0.467_913_934_572_691_05),
+            (0.661_209_386_466_264_5, 0.360_761_573_048_138_6),
+            (0.932_469_514_203_152, 0.171_324_492_379_170_34),
+        ],
+        7 => &[
+            (0.0, 0.417_959_183_673_469_4),
+            (0.405_845_151_377_397_2, 0.381_830_050_505_118_9),
+            (0.741_531_185_599_394_5, 0.279_705_391_489_276_64),
+            (0.949_107_912_342_758_5, 0.129_484_966_168_869_7),
+        ],
+        8 => &[
+            (0.183_434_642_495_649_8, 0.362_683_783_378_362),
+            (0.525_532_409_916_329, 0.313_706_645_877_887_3),
+            (0.796_666_477_413_626_7, 0.222_381_034_453_374_48),
+            (0.960_289_856_497_536_2, 0.101_228_536_290_376_26),
+        ],
+        9 => &[
+            (0.0, 0.330_239_355_001_259_8),
+            (0.324_253_423_403_808_9, 0.312_347_077_040_002_86),
+            (0.613_371_432_700_590_4, 0.260_610_696_402_935_44),
+            (0.836_031_107_326_635_8, 0.180_648_160_694_857_4),
+            (0.968_160_239_507_626_1, 0.081_274_388_361_574_41),
+        ],
+        12 => &[
+            (0.125_233_408_511_468_9, 0.249_147_045_813_402_77),
+            (0.367_831_498_998_180_2, 0.233_492_536_538_354_8),
+            (0.587_317_954_286_617_5, 0.203_167_426_723_065_92),
+            (0.769_902_674_194_304_7, 0.160_078_328_543_346_23),
+            (0.904_117_256_370_474_9, 0.106_939_325_995_318_43),
+            (0.981_560_634_246_719_2, 0.047_175_336_386_511_83),
+        ],
+        _ => &[
+            (0.095_012_509_837_637_44, 0.189_450_610_455_068_5),
+            (0.281_603_550_779_258_9, 0.182_603_415_044_923_58),
+            (0.458_016_777_657_227_4, 0.169_156_519_395_002_54),
+            (0.617_876_244_402_643_8, 0.149_595_988_816_576_74),
+            (0.755_404_408_355_003, 0.124_628_971_255_533_88),
+            (0.865_631_202_387_831_8, 0.095_158_511_682_492_79),
+            (0.944_575_023_073_232_6, 0.062_253_523_938_647_894),
+            (0.989_400_934_991_649_9, 0.027_152_459_411_754_096),
+        ],
+    }
+}
 
-const GAUSS_16: [(f64, f64); 8] = [
-    (0.095_012_509_837_637_44, 0.189_450_610_455_068_5),
-    (0.281_603_550_779_258_9, 0.182_603_415_044_923_58),
-    (0.458_016_777_657_227_4, 0.169_156_519_395_002_54),
-    (0.617_876_244_402_643_8, 0.149_595_988_816_576_74),
-    (0.755_404_408_355_003, 0.124_628_971_255_533_88),
-    (0.865_631_202_387_831_8, 0.095_158_511_682_492_79),
-    (0.944_575_023_073_232_6, 0.062_253_523_938_647_894),
-    (0.989_400_934_991_649_9, 0.027_152_459_411_754_096),
-];
+/// The positive node of the rule of 2 points, whose weights are 1.
+const NODE_OF_2: f64 = rule(2)[0].0;
 
-/// The nodes and weights on the interval from -1/2 to 1/2; the weights sum to 1.
-fn gauss(half: &'static [(f64, f64)]) -> impl Iterator<Item = (f64, f64)> + Clone {
-    half.iter()
-        .flat_map(|(node, weight)| [(-node / 2.0, weight / 2.0), (node / 2.0, weight / 2.0)])
+/// The rule of `count` points on the interval from -1/2 to 1/2: nodes and weights that sum to 1.
+pub(super) fn gauss(count: usize) -> impl Iterator<Item = (f64, f64)> + Clone {
+    rule(count).iter().flat_map(|&(node, weight)| {
+        let mirrored = (node > 0.0).then_some((-node / 2.0, weight / 2.0));
+        mirrored.into_iter().chain([(node / 2.0, weight / 2.0)])
+    })
 }
 
 /// The same with the interval cut into so many parts.
-fn in_parts(half: &'static [(f64, f64)], parts: u32) -> impl Iterator<Item = (f64, f64)> + Clone {
+fn in_parts(count: usize, parts: u32) -> impl Iterator<Item = (f64, f64)> + Clone {
     let part = 1.0 / f64::from(parts);
     (0..parts).flat_map(move |index| {
         let middle = (f64::from(index) + 0.5) * part - 0.5;
-        gauss(half).map(move |(node, weight)| (middle + node * part, weight * part))
+        gauss(count).map(move |(node, weight)| (middle + node * part, weight * part))
     })
 }
 
@@ -69,11 +100,11 @@ pub(crate) fn square(radius: f64) -> impl Iterator<Item = (DVec2, f64)> {
 /// The points and weights of [`square`] along one of its sides.
 pub(crate) fn side(radius: f64) -> impl Iterator<Item = (f64, f64)> + Clone {
     gauss(if radius >= 2.0 {
-        &GAUSS_4
+        4
     } else if radius >= 1.0 {
-        &GAUSS_8
+        8
     } else {
-        &GAUSS_12
+        12
     })
 }
 
@@ -82,20 +113,21 @@ pub(crate) fn exact_square(radius: f64, parts: u32) -> impl Iterator<Item = (DVe
     on_square(in_parts(exact_side(radius), parts))
 }
 
-fn exact_side(radius: f64) -> &'static [(f64, f64)] {
+fn exact_side(radius: f64) -> usize {
     if radius >= 2.0 {
-        &GAUSS_4
+        4
     } else if radius >= 1.0 {
-        &GAUSS_12
+        12
     } else {
-        &GAUSS_16
+        16
     }
 }
 
 /// How many parts the square takes where a pixel sees so many periods of a grating across it: each has six points.
 pub(crate) fn parts(radius: f64, periods: f64) -> u32 {
-    let points = 2.0 * exact_side(radius).len() as f64;
-    (6.0 * periods / points).ceil().clamp(1.0, MOST_PARTS) as u32
+    (6.0 * periods / exact_side(radius) as f64)
+        .ceil()
+        .clamp(1.0, MOST_PARTS) as u32
 }
 
 /// The most parts: finer gratings are even for a disc.
@@ -109,12 +141,12 @@ fn on_square(side: impl Iterator<Item = (f64, f64)> + Clone) -> impl Iterator<It
 /// 8 x 24 points and weights for an average over the disc of radius 1 about the origin: Gauss points in the square of the
 /// distance, so that equal steps have equal areas, by equal angles.
 pub(crate) fn disc() -> impl Iterator<Item = (DVec2, f64)> {
-    on_disc(gauss(&GAUSS_8), 24)
+    on_disc(gauss(8), 24)
 }
 
 /// The same for `exact`: 12 x 36, so many times as many each way.
 pub(crate) fn exact_disc(parts: u32) -> impl Iterator<Item = (DVec2, f64)> {
-    on_disc(in_parts(&GAUSS_12, parts), 36 * parts)
+    on_disc(in_parts(12, parts), 36 * parts)
 }
 
 fn on_disc(
@@ -150,7 +182,7 @@ pub(crate) fn angle(piece: u32, count: u32) -> f64 {
 /// its very ends.
 pub(crate) fn chords_between(from: f64, to: f64) -> [Chord; 2] {
     let half = (to - from) / 2.0;
-    [-GAUSS_2, GAUSS_2].map(|node| {
+    [-NODE_OF_2, NODE_OF_2].map(|node| {
         let angle = from + half + node * half;
         let half_length = cos(angle);
         Chord {
