@@ -38,7 +38,7 @@ use crate::plan::{self, Method};
 use crate::scratch::Scratch;
 use crate::shadow::Shadow;
 
-pub(crate) use area::at_point;
+pub(crate) use area::{at_point, half_area};
 pub(crate) use buffer::clear;
 pub use options::PixelOptions;
 

@@ -49,6 +49,12 @@ pub(super) fn settled(density: f64) -> f64 {
     }
 }
 
+/// The area of the unit disc between y = 0 and `t`, right of its centre: from -π/4 to π/4.
+pub(crate) fn half_area(t: f64) -> f64 {
+    let t = t.clamp(-1.0, 1.0);
+    f64::midpoint(t * sqrt((1.0 - t) * (1.0 + t)), asin(t))
+}
+
 /// The angle from `a` to `b` seen from the origin, within a half turn.
 fn angle(a: DVec2, b: DVec2) -> f64 {
     atan2(a.perp_dot(b), a.dot(b))

@@ -6,6 +6,8 @@
 //! second derivative, and by 0.228 h^1.5 at the disc's ends, h in penumbra radii. So strips are of one height near these, and
 //! of three and of six heights where the profile is straighter: all of the three errors are below 0.35 level at 36 strips a radius.
 
+use crate::density::half_area;
+
 /// How many strips of the lowest height a chord is high.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Height {
@@ -48,12 +50,6 @@ pub(crate) struct Chords {
     pub(super) all: Vec<Chord>,
     /// Strips from the middle to an end.
     pub(super) half: i64,
-}
-
-/// The integral of sqrt(1 - u²) from 0 to t.
-fn half_area(t: f64) -> f64 {
-    let t = t.min(1.0);
-    (t * (1.0 - t * t).max(0.0).sqrt() + libm::asin(t)) / 2.0
 }
 
 impl Chords {

@@ -8,7 +8,9 @@
 use core::f64::consts::{FRAC_1_PI, FRAC_PI_4};
 
 use glam::DVec2;
-use libm::{asin, sqrt};
+use libm::sqrt;
+
+use crate::density::half_area;
 
 /// A rounded rectangle in units of the penumbra radius, about any origin.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -120,7 +122,7 @@ fn clamped(x: f64, ends: [f64; 2], radii: [f64; 2]) -> f64 {
     if first >= last {
         return 0.0;
     }
-    let whole = half_disc(last) - half_disc(first);
+    let whole = quick_half_area(last) - quick_half_area(first);
     if x <= -1.0 {
         return -whole;
     }
@@ -144,13 +146,13 @@ fn straight(x: f64, from: f64, to: f64) -> f64 {
     if from >= to {
         return 0.0;
     }
-    let whole = half_disc(to) - half_disc(from);
+    let whole = quick_half_area(to) - quick_half_area(from);
     if x.abs() >= 1.0 {
         return whole.copysign(x);
     }
     let half = sqrt((1.0 - x) * (1.0 + x));
     let (start, end) = (from.clamp(-half, half), to.clamp(-half, half));
-    let within = half_disc(end) - half_disc(start);
+    let within = quick_half_area(end) - quick_half_area(start);
     x * (end - start) + (whole - within).copysign(x)
 }
 
@@ -190,12 +192,12 @@ fn rounded(center: DVec2, radius: f64, from: f64, to: f64) -> f64 {
         let up = middle - center.y;
         let side = center.x + sqrt((radius * radius - up * up).max(0.0));
         sum += if side.abs() >= disc {
-            (half_disc(end) - half_disc(start)).copysign(side)
+            (quick_half_area(end) - quick_half_area(start)).copysign(side)
         } else {
             let half = if radius > LARGE {
-                exact_half_disc
+                half_area
             } else {
-                half_disc
+                quick_half_area
             };
             let turned = |y: f64| half((y - center.y) / radius);
             center.x * (end - start) + radius * radius * (turned(end) - turned(start))
@@ -205,18 +207,12 @@ fn rounded(center: DVec2, radius: f64, from: f64, to: f64) -> f64 {
     sum
 }
 
-/// The integral of `sqrt(1 - u²)` from 0 to `t`.
-fn exact_half_disc(t: f64) -> f64 {
-    let t = t.clamp(-1.0, 1.0);
-    f64::midpoint(t * sqrt((1.0 - t) * (1.0 + t)), asin(t))
-}
-
 /// Up to this radius of a corner, over the penumbra's, its square leaves of the polynomial's error less than 0.001 level.
 const LARGE: f64 = 32.0;
 
-/// The integral of `sqrt(1 - u²)` from 0 to `t`, to 2.5e-9, without an arcsine: π/4 less what is left to the disc's edge,
+/// [`half_area`] to 2.5e-9, without an arcsine: π/4 less what is left to the disc's edge,
 /// which over v^1.5, v = 1 - |t|, is smooth. A polynomial through Chebyshev's points.
-fn half_disc(t: f64) -> f64 {
+fn quick_half_area(t: f64) -> f64 {
     let v = 1.0 - t.abs();
     if v <= 0.0 {
         return FRAC_PI_4.copysign(t);
