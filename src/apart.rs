@@ -34,6 +34,11 @@ pub(crate) fn around(boxes: impl IntoIterator<Item = (DVec2, DVec2)>) -> Option<
     boxes.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
 }
 
+/// The smallest box that holds some points, or none for none.
+pub(crate) fn around_points(points: impl IntoIterator<Item = DVec2>) -> Option<(DVec2, DVec2)> {
+    around(points.into_iter().map(|point| (point, point)))
+}
+
 /// The first box of a group.
 fn first(leaders: &mut [usize], mut index: usize) -> usize {
     while leaders[index] != index {

@@ -59,6 +59,7 @@ use strips::Strips;
 use tangents::{ProjectionCircle, tangent_loops};
 pub use triangles::{MeshQuality, MeshVertex, ShadowMesh};
 
+use crate::apart::around_points;
 use crate::error::Result;
 use crate::outline::{Edge, Outline};
 use crate::scratch::Scratch;
@@ -325,9 +326,7 @@ impl Shadow {
         let flat = (self.radius() * UMBRA_FLATNESS).max(self.extent() * UMBRA_FACET);
         let circles = projection_circles(&outline.moved(-center), self.radius(), flat);
         let loops = tangent_loops(&circles, 1.0, flat);
-        let mut points = loops.iter().flatten();
-        let first = *points.next()?;
-        let (min, max) = points.fold((first, first), |(min, max), &p| (min.min(p), max.max(p)));
+        let (min, max) = around_points(loops.into_iter().flatten())?;
         Some(Bounds::outwards(min + center, max + center))
     }
 }

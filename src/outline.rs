@@ -288,7 +288,7 @@ impl Outline {
     pub(crate) fn sanity_check(&self) {
         for edges in &self.loops {
             assert!(!edges.is_empty());
-            for (edge, next) in edges.iter().zip(edges.iter().cycle().skip(1)) {
+            for (edge, next) in sides(edges) {
                 assert!(edge.from().is_finite());
                 assert!(
                     (edge.to() - next.from()).length() < 1e-9,
@@ -300,13 +300,31 @@ impl Outline {
     }
 }
 
-fn closed_lines(polygon: &[DVec2]) -> Vec<Edge> {
-    let nexts = polygon.iter().cycle().skip(1);
-    polygon
-        .iter()
-        .zip(nexts)
-        .map(|(&from, &to)| Edge::Line(Line { from, to }))
+/// What goes round a loop, each with the next: a polygon's sides, if it is points.
+pub(crate) fn sides<T: Copy>(of_loop: &[T]) -> impl Iterator<Item = (T, T)> {
+    let nexts = of_loop.iter().cycle().skip(1);
+    of_loop.iter().copied().zip(nexts.copied())
+}
+
+pub(crate) fn closed_lines(polygon: &[DVec2]) -> Vec<Edge> {
+    sides(polygon)
+        .map(|(from, to)| Edge::Line(Line { from, to }))
         .collect()
+}
+
+/// How often closed lines wind round a point.
+pub(crate) fn winding(lines: impl Iterator<Item = (DVec2, DVec2)>, point: DVec2) -> i32 {
+    lines
+        .filter(|(from, to)| (from.y <= point.y) != (to.y <= point.y))
+        .map(|(from, to)| {
+            let side = (to - from).perp_dot(point - from);
+            if from.y <= point.y {
+                i32::from(side > 0.0)
+            } else {
+                -i32::from(side < 0.0)
+            }
+        })
+        .sum()
 }
 
 /// The area inside of edges, positive where it is on their left with y pointing up.

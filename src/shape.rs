@@ -10,6 +10,7 @@ use core::f64::consts::{FRAC_PI_2, PI};
 
 use glam::{DAffine2, DVec2};
 
+use crate::apart::around_points;
 use crate::error::{self, Error, MAX_SEGMENTS, Result};
 use crate::path::{Contour, EllipseArc, FillRule, Path, Segment, coordinates};
 
@@ -270,7 +271,7 @@ impl Shape {
 
     /// A box that holds the shape: its curves' control points, so not always the smallest.
     pub(crate) fn hull(&self) -> Option<(DVec2, DVec2)> {
-        let mut points = self
+        let points = self
             .contours
             .iter()
             .filter(|c| !c.segments.is_empty())
@@ -286,8 +287,7 @@ impl Shape {
                 });
                 core::iter::once(contour.start).chain(of_segments)
             });
-        let first = points.next()?;
-        Some(points.fold((first, first), |(min, max), p| (min.min(p), max.max(p))))
+        around_points(points)
     }
 
     /// A rectangle with round corners that fit, none of whose numbers is rounded.

@@ -17,7 +17,7 @@ use crate::error::Result;
 use crate::limits::at_most;
 use crate::mesh::regions::{Region, Triangles, Vertex, faces};
 use crate::mesh::tangents::{ProjectionCircle, tangent_loops};
-use crate::outline::{Edge, Outline};
+use crate::outline::{Edge, Outline, sides};
 use crate::shape::Shape;
 
 /// By how much curves turn from one face to the next at most, radians: 6 degrees.
@@ -210,7 +210,7 @@ impl Builder {
             .iter()
             .filter_map(|&point| self.insert(point, depth, Some(ring)))
             .collect();
-        for (&from, &to) in handles.iter().zip(handles.iter().cycle().skip(1)) {
+        for (from, to) in sides(&handles) {
             self.constrain(from, to);
         }
     }

@@ -21,6 +21,7 @@ use super::{Claim, Family, Parameter, Technique};
 use crate::density::{reach, square_average};
 use crate::error::{self, Result};
 use crate::grid::Grid;
+use crate::outline::sides;
 use crate::scratch::Scratch;
 use crate::shadow::Shadow;
 
@@ -60,9 +61,7 @@ impl Irradiance {
     #[must_use]
     pub fn density_at(&self, shadow: &Shadow, point: [f64; 2]) -> f64 {
         let polygons = shadow.polygons_within(0.02, 0.0);
-        let lines = polygons
-            .iter()
-            .flat_map(|points| super::view::sides(points));
+        let lines = polygons.iter().flat_map(|points| sides(points));
         let point = DVec2::from_array(point);
         self.hidden(lines, point, shadow.radius(), point)
     }

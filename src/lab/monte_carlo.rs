@@ -8,11 +8,12 @@ use glam::DVec2;
 use libm::sqrt;
 
 use super::rays::{number, on_disc};
-use super::view::{View, holds, sides};
+use super::view::{View, holds};
 use super::{Claim, Family, Parameter, Technique};
 use crate::density::{averaged_side, reach};
 use crate::error::{self, Result};
 use crate::grid::Grid;
+use crate::outline::sides;
 use crate::scratch::Scratch;
 use crate::shadow::Shadow;
 

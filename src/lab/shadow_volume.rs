@@ -14,6 +14,7 @@ use super::view::{View, holds};
 use super::{Claim, Family, Parameter, Technique};
 use crate::error::{self, Result};
 use crate::grid::Grid;
+use crate::outline::sides;
 use crate::scratch::Scratch;
 use crate::shadow::Shadow;
 
@@ -75,7 +76,7 @@ pub(super) fn hull(mut points: Vec<DVec2>) -> Vec<DVec2> {
 
 /// Whether a convex polygon holds a point.
 fn in_convex(polygon: &[DVec2], point: DVec2) -> bool {
-    super::view::sides(polygon).all(|(a, b)| (b - a).perp_dot(point - a) >= 0.0)
+    sides(polygon).all(|(a, b)| (b - a).perp_dot(point - a) >= 0.0)
 }
 
 /// Twice the signed area between a convex polygon and the triangle of the origin and a line: summed over an outline's
@@ -89,10 +90,10 @@ fn shared(light: &[DVec2], from: DVec2, to: DVec2, spare: &mut [Vec<DVec2>; 2]) 
     inside.clear();
     inside.extend([DVec2::ZERO, from, to]);
     // Cut by one side of the light after the other (Sutherland & Hodgman 1974).
-    for (a, b) in super::view::sides(light) {
+    for (a, b) in sides(light) {
         let height = |p: DVec2| (b - a).perp_dot(p - a);
         next.clear();
-        for (p, q) in super::view::sides(inside) {
+        for (p, q) in sides(inside) {
             let (hp, hq) = (height(p), height(q));
             if hp >= 0.0 {
                 next.push(p);
@@ -103,7 +104,7 @@ fn shared(light: &[DVec2], from: DVec2, to: DVec2, spare: &mut [Vec<DVec2>; 2]) 
         }
         core::mem::swap(inside, next);
     }
-    super::view::sides(inside).map(|(p, q)| p.perp_dot(q)).sum()
+    sides(inside).map(|(p, q)| p.perp_dot(q)).sum()
 }
 
 impl Technique for ShadowVolume {

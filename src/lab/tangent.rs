@@ -13,11 +13,12 @@ use glam::DVec2;
 use libm::{atan2, cos, sin};
 
 use super::shadow_volume::hull;
-use super::view::{View, sides};
+use super::view::View;
 use super::{Claim, Family, Parameter, Technique};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::mesh::{MeshVertex, Profile, ShadowMesh};
+use crate::outline::sides;
 use crate::scratch::Scratch;
 use crate::shadow::Shadow;
 

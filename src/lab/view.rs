@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::outline::{Edge, Line, clip_to_box};
+use crate::outline::{Edge, Line, clip_to_box, sides, winding};
 use crate::shadow::Shadow;
 
 /// Oriented polygons that do not cross, in pixels, and the penumbra radius.
@@ -95,24 +95,7 @@ impl View {
     }
 }
 
-/// A polygon's sides, the last one back to its first point.
-pub(super) fn sides(points: &[DVec2]) -> impl Iterator<Item = (DVec2, DVec2)> {
-    let nexts = points.iter().cycle().skip(1);
-    points.iter().zip(nexts).map(|(a, b)| (*a, *b))
-}
-
 /// Whether oriented lines wind round a point.
 pub(super) fn holds(lines: &[(DVec2, DVec2)], point: DVec2) -> bool {
-    let mut winding = 0;
-    for &(a, b) in lines {
-        if (a.y <= point.y) != (b.y <= point.y) {
-            let side = (b - a).perp_dot(point - a);
-            if a.y <= point.y && side > 0.0 {
-                winding += 1;
-            } else if a.y > point.y && side < 0.0 {
-                winding -= 1;
-            }
-        }
-    }
-    winding != 0
+    winding(lines.iter().copied(), point) != 0
 }

@@ -10,9 +10,10 @@ use std::collections::HashMap;
 use fearless_simd::{Level, Simd, dispatch};
 use glam::DVec2;
 
+use crate::apart::around_points;
 use crate::density::lanes::LANES;
 use crate::density::rows::half_disc;
-use crate::outline::{Edge, Line, clip_to_box};
+use crate::outline::{Edge, clip_to_box, closed_lines};
 
 /// How far densities may be off by single precision: 0.002 level.
 pub(super) const NOISE: f64 = 8e-6;
@@ -61,14 +62,8 @@ struct Side {
 impl Cells {
     /// Of closed loops of lines, seen through a `radius` above 0.
     pub(super) fn new(loops: &[Vec<DVec2>], radius: f64) -> Self {
-        let lines = |points: &Vec<DVec2>| {
-            let next = points.iter().cycle().skip(1);
-            let line = |(&from, &to)| Edge::Line(Line { from, to });
-            points.iter().zip(next).map(line).collect::<Vec<_>>()
-        };
-        let points = || loops.iter().flatten().copied();
-        let min = points().reduce(DVec2::min).unwrap_or_default() - radius;
-        let max = points().reduce(DVec2::max).unwrap_or_default() + radius;
+        let (min, max) = around_points(loops.iter().flatten().copied()).unwrap_or_default();
+        let (min, max) = (min - radius, max + radius);
         let side = (max - min).max_element();
         let depth = libm::ceil(libm::log2(side / (radius * SIDE))).clamp(0.0, MOST_DEPTH.into());
         let mut field = Self {
@@ -78,7 +73,10 @@ impl Cells {
             side,
             depth: depth as u32,
             cells: vec![Cell {
-                edges: loops.iter().flat_map(lines).collect(),
+                edges: loops
+                    .iter()
+                    .flat_map(|points| closed_lines(points))
+                    .collect(),
                 ..Cell::default()
             }],
             places: HashMap::new(),

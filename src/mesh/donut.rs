@@ -9,7 +9,7 @@ use glam::DVec2;
 use super::{FACET, ShadowMesh, projection_circles, tangent_loops};
 use crate::error::{self, Result};
 use crate::light::Projection;
-use crate::outline::Edge;
+use crate::outline::{Edge, sides};
 use crate::shadow::Shadow;
 use crate::shape::Shape;
 
@@ -53,10 +53,7 @@ impl ShadowMesh {
         let lines: Vec<[DVec2; 2]> = outline
             .polygons(flat)
             .iter()
-            .flat_map(|points| {
-                let next = points.iter().cycle().skip(1);
-                points.iter().zip(next).map(|(&from, &to)| [from, to])
-            })
+            .flat_map(|points| sides(points).map(<[DVec2; 2]>::from))
             .collect();
         let boxes = Boxes::new(lines.iter().map(|&line| bounds(line)).zip(0..));
         let mut near = Vec::new();

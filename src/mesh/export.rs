@@ -4,7 +4,8 @@ use core::fmt::Write;
 
 use glam::DVec2;
 
-use super::ShadowMesh;
+use super::{MeshVertex, ShadowMesh};
+use crate::apart::{around, around_points};
 use crate::svg::{Svg, number};
 use crate::tone::Color;
 
@@ -40,17 +41,14 @@ impl ShadowMesh {
 #[must_use]
 pub fn meshes_to_svg<'a>(meshes: impl IntoIterator<Item = &'a ShadowMesh>) -> String {
     let mut svg = Svg::new(1.0);
-    let mut bounds: Option<(DVec2, DVec2)> = None;
+    let mut boxes = Vec::new();
     for mesh in meshes {
         svg.draw("<g shape-rendering=\"crispEdges\">");
         svg.draw_mesh(mesh, 1.0, Color::BLACK);
         svg.draw("</g>");
-        for vertex in &mesh.vertices {
-            let p = vertex.at();
-            bounds = Some(bounds.map_or((p, p), |(min, max)| (min.min(p), max.max(p))));
-        }
+        boxes.extend(around_points(mesh.vertices.iter().map(MeshVertex::at)));
     }
-    let (min, max) = bounds.unwrap_or((DVec2::ZERO, DVec2::ONE));
+    let (min, max) = around(boxes).unwrap_or((DVec2::ZERO, DVec2::ONE));
     let (min, max) = (min.floor(), max.ceil());
     svg.finish((max - min).to_array(), min, max - min)
 }

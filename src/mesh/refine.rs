@@ -18,6 +18,7 @@ use super::regions::{Face, Region, Triangles, Vertex, faces};
 use super::settle::settle;
 use super::thin::{Corner, TRIED, Thinning, Triangle};
 use super::{Effort, MeshOptions, MeshVertex, Ring, ShadowMesh};
+use crate::outline::sides;
 
 /// Rounds of refinement at most. Each halves the larger triangles: the finest tolerance takes about 12; but the last vertices between a
 /// comb's teeth came one a round, and 40 were too few.
@@ -72,7 +73,7 @@ impl Refinement {
                     .iter()
                     .filter_map(|&point| refinement.insert(point, Some(index)))
                     .collect();
-                for (&from, &to) in handles.iter().zip(handles.iter().cycle().skip(1)) {
+                for (from, to) in sides(&handles) {
                     refinement.constrain(from, to);
                 }
             }

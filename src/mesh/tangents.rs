@@ -153,6 +153,7 @@ pub(super) mod tests {
     use core::f64::consts::PI;
 
     use super::*;
+    use crate::outline::sides;
 
     fn circles(points: &[[f64; 2]], radius: f64) -> Vec<ProjectionCircle> {
         points
@@ -167,15 +168,7 @@ pub(super) mod tests {
     pub(in crate::mesh) fn area(loops: &[Vec<DVec2>]) -> f64 {
         loops
             .iter()
-            .map(|points| {
-                let nexts = points.iter().cycle().skip(1);
-                points
-                    .iter()
-                    .zip(nexts)
-                    .map(|(a, b)| a.perp_dot(*b))
-                    .sum::<f64>()
-                    / 2.0
-            })
+            .map(|points| sides(points).map(|(a, b)| a.perp_dot(b)).sum::<f64>() / 2.0)
             .sum()
     }
 

@@ -11,7 +11,7 @@ use super::refine::Refinement;
 use super::tangents::{ProjectionCircle, tangent_loops, tangent_normal};
 use super::{MeshOptions, NARROWEST, SLACK, ShadowMesh, ring_flatness, umbra};
 use crate::error::MAX_COORDINATE;
-use crate::outline::{Winding, resolve_loops};
+use crate::outline::{Winding, resolve_loops, sides};
 use crate::path::{FillRule, arc_steps};
 use crate::tilted::{Circle, TiltedShadow};
 
@@ -154,8 +154,7 @@ impl TiltedShadow {
 fn reached(circles: &[Vec<ProjectionCircle>], share: f64) -> Vec<Vec<DVec2>> {
     let mut parts = Vec::new();
     let mut push = |mut points: Vec<DVec2>| {
-        let nexts = points.iter().cycle().skip(1);
-        let area: f64 = points.iter().zip(nexts).map(|(a, b)| a.perp_dot(*b)).sum();
+        let area: f64 = sides(&points).map(|(a, b)| a.perp_dot(b)).sum();
         if area < 0.0 {
             points.reverse();
         }
@@ -163,7 +162,7 @@ fn reached(circles: &[Vec<ProjectionCircle>], share: f64) -> Vec<Vec<DVec2>> {
     };
     for of_loop in circles {
         push(of_loop.iter().map(|circle| circle.center).collect());
-        for (&from, &to) in of_loop.iter().zip(of_loop.iter().cycle().skip(1)) {
+        for (from, to) in sides(of_loop) {
             let steps = arc_steps(from.radius, TAU, share * from.radius);
             let at = |step: u32| {
                 let angle = TAU * f64::from(step) / f64::from(steps);

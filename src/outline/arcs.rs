@@ -122,7 +122,7 @@ mod tests {
 
     use super::*;
     use crate::density::at_point;
-    use crate::outline::Outline;
+    use crate::outline::{Outline, sides};
     use crate::path::{FillRule, Path};
     use crate::shape::Shape;
 
@@ -147,8 +147,7 @@ mod tests {
     fn edges(path: &Path, levels: f64, radius: f64) -> Vec<Edge> {
         let mut edges = Vec::new();
         path.contours[0].arcs(&Fineness::new(levels, radius, 1.0), &mut edges);
-        let nexts = edges.iter().cycle().skip(1);
-        assert!(edges.iter().zip(nexts).all(|(a, b)| a.to() == b.from()));
+        assert!(sides(&edges).all(|(a, b)| a.to() == b.from()));
         edges
     }
 

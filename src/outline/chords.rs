@@ -96,15 +96,14 @@ mod tests {
 
     use super::*;
     use crate::density::{at_point, flatness};
-    use crate::outline::{Outline, area};
+    use crate::outline::{Outline, area, sides};
     use crate::path::{FillRule, Path};
     use crate::shape::Shape;
 
     fn edges(contour: &Contour, levels: f64, radius: f64) -> Vec<Edge> {
         let mut edges = Vec::new();
         contour.chords(&Fineness::new(levels, radius, 1.0), &mut edges);
-        let nexts = edges.iter().cycle().skip(1);
-        assert!(edges.iter().zip(nexts).all(|(a, b)| a.to() == b.from()));
+        assert!(sides(&edges).all(|(a, b)| a.to() == b.from()));
         edges
     }
 

@@ -11,6 +11,7 @@ use i_overlay::float::overlay::{FloatOverlay, OverlayOptions};
 use i_overlay::i_float::adapter::FloatPointAdapter;
 
 use super::{Outline, closed_lines};
+use crate::apart::around_points;
 use crate::path::FillRule;
 
 /// How far off a straight line, over the extent of all there is, the overlay may leave a point that belongs on it: 2^-43, some
@@ -31,10 +32,7 @@ pub(crate) enum Winding {
 /// The overlay drops vertices that are on a straight line to the last bit. Where lines cross on a side it may leave others, and
 /// slivers, and which of them depends on where contours begin: they go here.
 pub(crate) fn resolve(polygons: &[Vec<DVec2>], winding: Winding) -> Outline {
-    let (mut min, mut max) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-    for &vertex in polygons.iter().flatten() {
-        (min, max) = (min.min(vertex), max.max(vertex));
-    }
+    let (min, max) = around_points(polygons.iter().flatten().copied()).unwrap_or_default();
     let thinnest = (max - min).max_element() * ROUNDING;
     let loops = resolve_loops(polygons, winding, false)
         .iter()

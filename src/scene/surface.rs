@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
+use crate::apart::around_points;
 use crate::error::{Error, Result};
 #[cfg(feature = "finish")]
 use crate::finish::Finish;
@@ -247,9 +248,7 @@ impl Surface {
 
     /// The box of the surface as it is seen from above, scene units.
     pub(crate) fn hull(&self) -> Option<(DVec2, DVec2)> {
-        let corners = self.corners()?.map(DVec3::truncate);
-        let over = |other: fn(DVec2, DVec2) -> DVec2| corners.into_iter().reduce(other);
-        Some((over(DVec2::min)?, over(DVec2::max)?))
+        around_points(self.corners()?.map(DVec3::truncate))
     }
 
     /// The elevation of its highest corner.

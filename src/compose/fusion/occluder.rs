@@ -5,6 +5,7 @@ use core::ops::Range;
 use glam::DVec2;
 
 use super::wedge::Border;
+use crate::apart::around_points;
 use crate::tilted::Circle;
 
 /// Along an outline that runs by more than this for each step up, chords change faster than pieces of the disc's height tell.
@@ -169,13 +170,14 @@ impl Occluder {
 
 impl Loop {
     fn new(polygon: &[DVec2], scale: f64) -> Option<Self> {
-        let min = polygon.iter().copied().reduce(DVec2::min)?;
+        let (min, _) = around_points(polygon.iter().copied())?;
         let base = (min * scale).floor();
         let points: Vec<DVec2> = polygon.iter().map(|&point| point * scale - base).collect();
+        let (min, max) = around_points(points.iter().copied())?;
         let mut of_loop = Self {
             base,
-            min: points.iter().copied().fold(DVec2::MAX, DVec2::min),
-            max: points.iter().copied().fold(DVec2::MIN, DVec2::max),
+            min,
+            max,
             ..Self::default()
         };
         let count = points.len();

@@ -16,6 +16,7 @@ use super::boxes::Boxes;
 use super::{bounds, crosses, distance};
 use crate::mesh::samples::mix_densities;
 use crate::mesh::{MeshVertex, ShadowMesh};
+use crate::outline::sides;
 
 /// How often sides are tried again without those that could not be divided.
 const ROUNDS: usize = 4;
@@ -120,10 +121,9 @@ impl Cut {
         for points in loops {
             let mut numbers: Vec<u32> = points.iter().map(|&point| cut.number(point)).collect();
             numbers.dedup();
-            let nexts = numbers.iter().cycle().skip(1);
-            let ends = numbers.iter().zip(nexts).filter(|(from, to)| from != to);
+            let ends = sides(&numbers).filter(|(from, to)| from != to);
             cut.lines
-                .extend(ends.map(|(&from, &to)| Line::new([from, to])));
+                .extend(ends.map(|(from, to)| Line::new([from, to])));
         }
         cut.given = cut.vertices.len();
         cut

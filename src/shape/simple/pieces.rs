@@ -9,6 +9,8 @@ use core::ops::Range;
 
 use glam::DVec2;
 
+use crate::apart::around_points;
+use crate::outline::winding;
 use crate::path::{Contour, Curve, Part, Segment};
 
 /// More pieces than this are not looked through.
@@ -172,10 +174,7 @@ impl Pieces {
         }
         let own = self.pieces.get_mut(first..)?;
         own.last_mut()?.to = contour.start;
-        let ends = own.iter().map(|piece| piece.to);
-        let (min, max) = ends.fold((contour.start, contour.start), |(min, max), p| {
-            (min.min(p), max.max(p))
-        });
+        let (min, max) = around_points(own.iter().map(|piece| piece.to))?;
         self.contours.push((first..self.pieces.len(), min, max));
         (self.pieces.len() <= MOST_PIECES).then_some(())
     }
@@ -248,7 +247,10 @@ impl Pieces {
             .filter(|&(other, (_, min, max))| {
                 other != contour && point.cmpge(*min).all() && point.cmple(*max).all()
             })
-            .map(|(other, _)| winding(self.of(other), point))
+            .map(|(other, _)| {
+                let chords = self.of(other).iter();
+                winding(chords.map(|piece| (piece.from, piece.to)), point)
+            })
             .sum()
     }
 }
@@ -275,21 +277,4 @@ impl Piece {
         let along = (from.dot(chord) / chord.length_squared()).clamp(0.0, 1.0);
         (from - chord * along).length_squared()
     }
-}
-
-/// How often closed chords wind round a point beside them.
-fn winding(pieces: &[Piece], point: DVec2) -> i32 {
-    pieces
-        .iter()
-        .filter(|piece| (piece.from.y <= point.y) != (piece.to.y <= point.y))
-        .map(|piece| {
-            let up = piece.from.y <= point.y;
-            let left = (piece.to - piece.from).perp_dot(point - piece.from) > 0.0;
-            match (up, left) {
-                (true, true) => 1,
-                (false, false) => -1,
-                _ => 0,
-            }
-        })
-        .sum()
 }
