@@ -6,16 +6,20 @@
 //!
 //! All is in units of the disc's radius.
 
+mod pieces;
+mod places;
+
 use core::f32::consts::FRAC_1_PI;
-use core::iter::once;
 
 use fearless_simd::{Simd, SimdBase, SimdCombine, SimdFloat, f32x4, f32x8, f32x16, i32x16};
 use glam::DVec2;
 
 use super::lanes::LANES;
-use super::rows::{self, Slant, arc_chord, each_line, half_discs, line_at};
+use super::rows::{half_discs, line_at};
 use super::sweep::Sweep;
 use crate::outline::Edge;
+use pieces::Piece;
+use places::Places;
 
 /// Samples along a tile's sides.
 pub(crate) const SIDE: usize = 4;
@@ -30,12 +34,6 @@ const REACH: f64 = (SIDE as f64 - 1.0) / 2.0;
 /// come back.
 const UNIT: f32 = (1_u32 << 28) as f32;
 
-/// How far lines in place of an arc may move a density: 0.02 level.
-const ARCS: f64 = 8e-5;
-
-/// How near to the disc's an arc's radius is, over it, where the disc's edge runs along many of those lines at once.
-const ALONG: f64 = 0.2;
-
 /// The largest error from rounding, from polynomials and from lines in place of arcs, in levels.
 pub(crate) const ROUNDING: f64 = 0.05;
 
@@ -48,20 +46,6 @@ pub(crate) struct Lattice {
     /// Columns and rows of samples.
     pub(crate) size: [usize; 2],
 }
-
-/// A line, which is not level.
-#[derive(Debug, Clone, Copy)]
-struct Piece {
-    low: f64,
-    high: f64,
-    from: DVec2,
-    to: DVec2,
-    slant: Slant,
-}
-
-/// The tiles of a row from which a piece is seen as one thing and another: right of all discs before the first, cut from the first to
-/// the second and from the third to the fourth, inside between, and left of all from the fourth on.
-type Parts = [usize; 4];
 
 /// What is left from lattice to lattice: memory.
 #[derive(Debug, Default)]
@@ -77,86 +61,10 @@ pub(crate) struct Tiles {
     inside: Vec<[f64; 2]>,
 }
 
-/// Where densities are taken: so many places to each sample.
-#[derive(Debug)]
-struct Places<const N: usize> {
-    /// From each sample to its places, in radii.
-    offsets: [DVec2; N],
-    /// From sample to sample, and the largest of the offsets.
-    step: f64,
-    far: f64,
-    /// A tile's places, each by all its samples, about the middle of these.
-    xs: [[f32; LANES]; N],
-    ys: [[f32; LANES]; N],
-    /// The y of the tile's rows at two places, and again: the last half are unused.
-    downs: [[f32; LANES]; N],
-}
-
-impl<const N: usize> Places<N> {
-    fn new(offsets: [[f64; 2]; N], step: f64) -> Self {
-        let offsets = offsets.map(|offset| DVec2::from(offset) * step);
-        let far = offsets.iter().map(|offset| offset.max_element());
-        let [mut xs, mut ys, mut downs] = [[[0.0; LANES]; N]; 3];
-        let from_middle = |at: usize| (at as f64 - REACH) * step;
-        for place in 0..N {
-            for lane in 0..LANES {
-                let of = (2 * place + lane % (2 * SIDE) / SIDE).min(N - 1);
-                xs[place][lane] = (from_middle(lane % SIDE) + offsets[place].x) as f32;
-                ys[place][lane] = (from_middle(lane / SIDE) + offsets[place].y) as f32;
-                downs[place][lane] = (from_middle(lane % SIDE) + offsets[of].y) as f32;
-            }
-        }
-        Self {
-            offsets,
-            step,
-            far: far.fold(0.0, f64::max),
-            xs,
-            ys,
-            downs,
-        }
-    }
-
-    /// From the middle of a tile's places to the outer ones.
-    fn reach(&self) -> f64 {
-        REACH * self.step + self.far / 2.0
-    }
-}
-
-/// How far lines in place of an edge may move a density where one of them lies across the disc's edge.
-fn share(edge: &Edge) -> f64 {
-    match edge {
-        Edge::Arc(arc) if (arc.radius - 1.0).abs() < ALONG => {
-            // So many may lie there at once, as many again of another arc about the same centre. Each leaves what goes with the third
-            // power of its length, and there are more the shorter they are.
-            let count = 2.0 * arc.sweep.abs() * arc.radius / arc_chord(arc.radius, ARCS);
-            let count = count.max(1.0);
-            ARCS / (count * count.sqrt())
-        }
-        _ => ARCS,
-    }
-}
-
 impl Tiles {
     /// Takes the outline whose densities are drawn from then on.
     pub(crate) fn load(&mut self, edges: &[Edge], radius: f64, lattice: &Lattice) {
-        let scale = 1.0 / radius;
-        let place = |point: DVec2| (point - lattice.corner) * scale;
-        self.pieces.clear();
-        let mut push = |from: DVec2, to: DVec2| {
-            self.pieces
-                .extend(Slant::between(from, to).map(|slant| Piece {
-                    low: from.y.min(to.y),
-                    high: from.y.max(to.y),
-                    from,
-                    to,
-                    slant,
-                }));
-        };
-        for edge in edges {
-            let edge = edge.mapped(scale, place);
-            each_line(once(edge), share(&edge), &mut push);
-        }
-        rows::sort(&mut self.pieces, |p| [p.low, p.high, p.from.x, p.to.x]);
+        pieces::cut(edges, radius, lattice, &mut self.pieces);
     }
 
     /// Puts densities at `offsets` from all samples of a lattice, in samples and not less than 0, row by row, or from those in the tiles
@@ -348,58 +256,6 @@ fn spread<S: Simd>(simd: S, [a, b, c, d]: [f32; SIDE]) -> f32x16<S> {
     let row = |number: f32| f32x4::splat(simd, number);
     let (first, last) = (row(a).combine(row(b)), row(c).combine(row(d)));
     first.combine(last)
-}
-
-impl Piece {
-    /// What it is to the tiles of a row whose first samples have the y given.
-    #[inline(always)]
-    fn parts<const N: usize>(&self, top: f64, places: &Places<N>, tiles: usize) -> Parts {
-        let (step, spread) = (places.step, places.reach());
-        let slant = &self.slant;
-        let middle = top + spread;
-        let (low, high) = (self.low - middle, self.high - middle);
-        // Where the part that discs reach is, and half of the chord at the y nearest to theirs.
-        let reach = 1.0 + spread;
-        let (left_end, right_end) = (self.from.x.min(self.to.x), self.from.x.max(self.to.x));
-        let at = |y: f64| {
-            let x = self.from.x + (middle + y - self.from.y) * slant.slope;
-            x.max(left_end).min(right_end)
-        };
-        let (a, b) = (at(low.max(-reach)), at(high.min(reach)));
-        let beyond = (low.max(-high) - spread).max(0.0);
-        let half = ((1.0 - beyond) * (1.0 + beyond)).max(0.0).sqrt();
-        // A disc farther than 1 from the line does not meet it.
-        let crossing = self.from.x + (middle - self.from.y) * slant.slope;
-        let width = (1.0 + spread * slant.along.x.abs()) * slant.width;
-        let left = (a.min(b) - half).max(crossing - width);
-        let right = (a.max(b) + half).min(crossing + width);
-        // Where both ends are in all discs.
-        let chord = |end: DVec2| {
-            let y = (end.y - middle).abs() + spread;
-            ((1.0 - y) * (1.0 + y)).max(0.0).sqrt()
-        };
-        let chords = [chord(self.from), chord(self.to)];
-        let enters = (self.from.x - chords[0]).max(self.to.x - chords[1]);
-        let leaves = (self.from.x + chords[0]).min(self.to.x + chords[1]);
-
-        let per_tile = 1.0 / (SIDE as f64 * step);
-        let wide = 2.0 * spread;
-        // The first tile that begins after an x, and the first that does not end before it.
-        let begins = |x: f64| ((x * per_tile).ceil().max(0.0) as usize).min(tiles);
-        let ends = |x: f64| (((x - wide) * per_tile).floor() + 1.0).max(0.0) as usize;
-        let first = ends(left).min(tiles);
-        let last = begins(right).max(first);
-        let inside = if chords[0] > 0.0 && chords[1] > 0.0 {
-            [begins(enters), ends(leaves)].map(|tile| tile.clamp(first, last))
-        } else {
-            [last; 2]
-        };
-        if inside[0] < inside[1] {
-            [first, inside[0], inside[1], last]
-        } else {
-            [first, last, last, last]
-        }
-    }
 }
 
 #[cfg(test)]
