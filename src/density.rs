@@ -153,8 +153,9 @@ fn draw_part(
             if sums {
                 dispatch!(level, simd => grid::fill(simd, &edges, radius, on, options, scratch, sink));
             } else {
-                let radius = shadow.radius();
-                dispatch!(level, simd => direct::fill(simd, &edges, radius, on, options, scratch, sink));
+                // In scene units: whether arcs are as large as the disc is asked of them as they are.
+                let in_units = shadow.radius();
+                dispatch!(level, simd => direct::fill(simd, &edges, in_units, on, options, scratch, sink));
             }
             scratch.give(edges);
         }
