@@ -64,7 +64,7 @@
 //! | `compose.rs`, `compose/` | who casts on whom; pictures and SVG |
 //! | `svg.rs` | writing SVG |
 //! | `grid.rs`, `hidden.rs`, `paint.rs` | [`Grid`], [`Hidden`], [`Paint`]: the pixels, those that nobody sees, what they take |
-//! | `nine_patch.rs` | [`NinePatch`], [`ShadowKey`]: masks that stretch, to be kept |
+//! | `nine_patch.rs`, `nine_patch/key.rs` | [`NinePatch`], [`ShadowKey`]: masks that stretch, to be kept |
 //! | `parallel.rs` | bands of rows on several threads |
 //! | `scratch.rs`, `error.rs`, `limits.rs` | [`Scratch`], [`Error`], [`Limits`] |
 //! | `lab.rs`, `lab/` | `lab`: other ways to draw a shadow, to be measured against, one a file |
