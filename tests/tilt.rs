@@ -5,8 +5,8 @@
 use core::f32::consts::PI;
 
 use penumbral::{
-    Grid, Light, MeshVertex, PixelOptions, Pose, Scratch, ShadowMesh, Shape, TiltedShadow,
-    Tolerance,
+    FillRule, Grid, Light, MeshVertex, PixelOptions, Pose, Scratch, ShadowMesh, Shape,
+    TiltedShadow, Tolerance,
 };
 
 const LIGHT: [f64; 3] = [80.0, 30.0, 300.0];
@@ -150,6 +150,47 @@ fn pixels_are_the_closed_form_through_the_whole_flip() {
             }
             before = Some(densities);
         }
+    }
+}
+
+/// A card whose lower edge is under the ground, and one with a window: each pixel has a density that the closed form has in it.
+#[test]
+fn pixels_of_casters_that_dip_below_the_ground_are_the_closed_form() {
+    let ring = |x: f32, y: f32, w: f32, h: f32| [[x, y], [x + w, y], [x + w, y + h], [x, y + h]];
+    let card = Shape::rect(40.0, 40.0, 120.0, 80.0).unwrap();
+    let hole = ring(70.0, 60.0, 60.0, 40.0);
+    let window = [ring(40.0, 40.0, 120.0, 80.0), hole];
+    let window = Shape::polygon(&window, FillRule::EvenOdd).unwrap();
+    for (shape, radius, elevation, angle) in [
+        (&card, 100.0, 40.0, 1.0),
+        (&card, 800.0, 8.0, 0.3),
+        (&card, 800.0, 40.0, 1.4),
+        (&card, 20.0, 8.0, 0.3),
+        (&window, 800.0, 40.0, 1.4),
+        (&window, 200.0, 20.0, 0.4),
+    ] {
+        let pose = Pose::turned(elevation, [100.0, 80.0], [0.0, 1.0], angle).unwrap();
+        let light = Light::new([100.0, 0.0, 600.0], radius).unwrap();
+        let shadow = light.cast_posed(shape, &pose, 0.0).unwrap();
+        let drawn = drawn(&shadow, [200, 160]);
+        let mut worst: f64 = 0.0;
+        for (index, density) in (0_u16..).zip(&drawn) {
+            let corner = [index % 200, index / 200].map(f32::from);
+            let (mut least, mut most) = (1.0_f64, 0.0_f64);
+            for step in 0_u8..25 {
+                let offset = [step % 5, step / 5].map(|at| f32::from(at) / 4.0);
+                let point = [corner[0] + offset[0], corner[1] + offset[1]];
+                let exact = shadow.density_at(point);
+                (least, most) = (least.min(exact), most.max(exact));
+            }
+            let off = (least - f64::from(*density)).max(f64::from(*density) - most);
+            worst = worst.max(off * 255.0);
+        }
+        println!("radius {radius}, elevation {elevation}, {angle}: {worst} levels");
+        assert!(
+            worst <= 1.0,
+            "radius {radius}, elevation {elevation}, {angle}: {worst} levels"
+        );
     }
 }
 

@@ -17,6 +17,9 @@ use crate::outline::{Edge, Line, clip_to_box};
 use crate::scratch::Scratch;
 use crate::tilted::{Circle, TiltedShadow};
 
+/// From this penumbra radius on, in pixels, it takes more points of the light to tell what it hides of a pixel.
+const WIDE: f64 = 1.0;
+
 /// The side of a tile, in pixels.
 const TILE: i64 = 16;
 
@@ -170,7 +173,12 @@ impl Painter {
                 .iter()
                 .map(|circle| Seen {
                     at: circle.seen_from(middle),
-                    motion: reach * circle.scale / circle.radius,
+                    // Where the caster is cut at its receiver, rounding leaves radii a little below 0.
+                    motion: if circle.radius > 0.0 {
+                        reach * circle.scale / circle.radius
+                    } else {
+                        f64::INFINITY
+                    },
                 })
                 .collect();
             let count = circles.len();
@@ -212,10 +220,15 @@ impl Painter {
         if side == 0.0 {
             return self.at_point(middle);
         }
+        let is_wide = self.radii.end > WIDE;
         if radius < quadrature::COVERAGE_RADIUS {
-            return quadrature::disc()
-                .map(|(light, weight)| weight * self.coverage(middle, light))
-                .sum();
+            let mut hidden = |(light, weight)| weight * self.coverage(middle, light);
+            // Where the caster touches its receiver, what is hard in the pixel is seen with what is wide.
+            return if is_wide {
+                quadrature::exact_disc(1).map(&mut hidden).sum()
+            } else {
+                quadrature::disc().map(&mut hidden).sum()
+            };
         }
         quadrature::square(radius)
             .map(|(offset, weight)| weight * self.at_point(middle + offset * side))
@@ -274,9 +287,10 @@ impl Painter {
             let [origin, x, y] = self.plane.each_ref().map(of);
             origin + along_x * x + along_y * y
         };
-        let radius = at(|circle| circle.radius) / at(|circle| circle.scale);
+        // Beyond where it touches the receiver the plane goes on below, by as much.
+        let radius = (at(|circle| circle.radius) / at(|circle| circle.scale)).abs();
         if radius.is_finite() {
-            radius.clamp(self.radii.start, self.radii.end)
+            radius.clamp(self.radii.start.max(0.0), self.radii.end)
         } else {
             self.radii.start
         }
