@@ -164,14 +164,20 @@ mod tests {
     }
 
     fn line(a: Vec2, b: Vec2) -> f32 {
+        if a == b {
+            return 0.0;
+        }
         let way = (b - a).normalize();
         let away = a.perp_dot(way);
         let half = (1.0 - away * away).max(0.0).sqrt();
-        let near = (-half).clamp(a.dot(way), b.dot(way));
-        let far = half.clamp(a.dot(way), b.dot(way));
-        let foot = a - way * a.dot(way);
-        let (p, q) = (foot + way * near, foot + way * far);
-        turn(a, p) + away * (far - near) + turn(q, b)
+        let (start, end) = (a.dot(way), b.dot(way));
+        let clamp = |v: f32| v.max(start).min(end);
+        let (near, far) = (clamp(-half), clamp(half));
+        let foot = a - way * start;
+        let select = |turn: f32, none: bool| if none { 0.0 } else { turn };
+        let before = select(turn(a, foot + way * near), near == start);
+        let behind = select(turn(foot + way * far, b), far == end);
+        before + away * (far - near) + behind
     }
 
     fn bulge(angle: f32) -> f32 {
@@ -285,6 +291,43 @@ mod tests {
                         "{size:?} {corners:?} {radius}: {worst} of {}",
                         mesh.error_levels()
                     );
+                }
+            }
+        }
+    }
+
+    /// Where arcs meet sides, a disc about a pixel has an end of both in its middle, or next to it.
+    #[test]
+    fn ends_of_arcs_are_exact() {
+        for (index, radius) in (1_u8..160).map(|index| (index, 0.53 * f32::from(index))) {
+            for size in [[300.0, 80.0], [40.0; 2], [56.0, 24.0], [41.0, 33.0]] {
+                for corner in [2.0, 4.0, 8.0, 100.0, 3e-8 * radius] {
+                    let shadow = shadow(size, [corner; 4], radius);
+                    let mesh = shadow.compact_mesh().unwrap();
+                    let (half, corners) = (Vec2::from(mesh.half_size()), mesh.corner_radii());
+                    let ends = [Vec2::new(corners[0], 0.0), Vec2::new(0.0, corners[0])];
+                    for (end, nudge) in ends.into_iter().zip([Vec2::Y, Vec2::X]) {
+                        for by in [0.0, f32::EPSILON, -f32::EPSILON] {
+                            let place = end - half + by * nudge;
+                            let found = density(place, half, corners);
+                            let middle = [-5.0, 3.0];
+                            let at = [0, 1].map(|axis: usize| {
+                                let middle = middle[axis] + f64::from(size[axis]) / 2.0;
+                                middle + f64::from(place[axis]) * shadow.radius()
+                            });
+                            let outline = shadow.exact_outline();
+                            let exact = crate::density::at_point(
+                                outline.edges(),
+                                at.into(),
+                                shadow.radius(),
+                            );
+                            let error = (f64::from(found) - exact).abs() * 255.0;
+                            assert!(
+                                error <= mesh.error_levels(),
+                                "{index}: {size:?} {corner} {place}: {error}"
+                            );
+                        }
+                    }
                 }
             }
         }

@@ -61,13 +61,21 @@ fn turn(a: vec2f, b: vec2f) -> f32 {
 
 // Twice the area that the unit disc shares with the triangle of its centre and a line.
 fn line(a: vec2f, b: vec2f) -> f32 {
+    if all(a == b) {
+        return 0.0;
+    }
     let way = normalize(b - a);
     let away = cross(a, way);
     let half = sqrt(max(1.0 - away * away, 0.0));
-    let near = clamp(-half, dot(a, way), dot(b, way));
-    let far = clamp(half, dot(a, way), dot(b, way));
-    let foot = a - way * dot(a, way);
-    return turn(a, foot + way * near) + away * (far - near) + turn(foot + way * far, b);
+    let start = dot(a, way);
+    let end = dot(b, way);
+    let near = clamp(-half, start, end);
+    let far = clamp(half, start, end);
+    let foot = a - way * start;
+    // Where the disc holds an end, nothing lies before or behind it: what rounding leaves may turn anywhere.
+    let before = select(turn(a, foot + way * near), 0.0, near == start);
+    let behind = select(turn(foot + way * far, b), 0.0, far == end);
+    return before + away * (far - near) + behind;
 }
 
 // An angle of at most a quarter turn, less its sine.
