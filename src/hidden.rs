@@ -6,7 +6,7 @@ pub(crate) mod inside;
 use core::ops::Range;
 
 use self::inside::sort_by_row;
-use crate::density::rounded::Rounded;
+use crate::density::rounded::{LARGEST, Rounded};
 use crate::grid::Grid;
 use crate::light::Projection;
 use crate::path::Contour;
@@ -283,7 +283,7 @@ impl Hidden {
         };
         let card = Rounded::of_loop(&edges).filter(|card| {
             let size = (card.max - card.min).max_element() * scale;
-            exact && size <= LARGEST_CARD
+            exact && size <= LARGEST
         });
         if let Some(card) = card {
             let card = Rounded {
@@ -305,10 +305,6 @@ impl Hidden {
 
 /// Spans that are kept as they come before they are joined.
 const MANY: usize = 1 << 16;
-
-/// The largest rectangle, in pixels, that is told from one whose sides are not quite level: rectangles are found within 1e-9 of their
-/// size.
-const LARGEST_CARD: f64 = 1e5;
 
 /// How far lines in place of curves that need a fill rule may move a pixel's coverage, in levels: they are within [`inside::FLATNESS`].
 const CURVES: f64 = 2.0;

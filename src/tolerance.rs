@@ -19,9 +19,14 @@ impl Tolerance {
         Ok(Self(error::within(
             "tolerance",
             f64::from(levels),
-            1.0 / 16.0,
+            LEAST_LEVELS,
             MOST_LEVELS,
         )?))
+    }
+
+    /// So many levels, or the fewest that there are.
+    pub(crate) fn at_least(levels: f64) -> Self {
+        Self(levels.max(LEAST_LEVELS))
     }
 
     /// The tolerance over a strength from 0 to 1, as far as tolerances go.
@@ -35,6 +40,9 @@ impl Tolerance {
         self.0
     }
 }
+
+/// The smallest tolerance, in levels.
+const LEAST_LEVELS: f64 = 1.0 / 16.0;
 
 /// The largest tolerance, in levels: a quarter of the whole.
 const MOST_LEVELS: f64 = 64.0;

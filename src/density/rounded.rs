@@ -4,6 +4,10 @@ use glam::DVec2;
 
 use crate::outline::{self, Edge, Outline};
 
+/// The largest rectangle, in pixels, that is told from one whose sides are not quite level: rectangles are found within 1e-9 of their
+/// size.
+pub(crate) const LARGEST: f64 = 1e5;
+
 /// A rectangle along the axes with circular corners.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Rounded {

@@ -8,7 +8,7 @@ use core::f64::consts::PI;
 use glam::DVec2;
 use libm::{exp, log, log1p};
 
-use crate::density::rounded::Rounded;
+use crate::density::rounded::{LARGEST, Rounded};
 use crate::grid::{Grid, LEAST_SCALE, MOST_SCALE};
 use crate::shadow::Shadow;
 use crate::tolerance::Tolerance;
@@ -38,10 +38,14 @@ pub struct PatchPlace {
     pub max: [i64; 2],
 }
 
-/// Shares of the tolerance for rounding to steps: of a side's place, of the penumbra radius, of corners' radii.
-const SIDE: f64 = 0.2;
-const RADIUS: f64 = 0.1;
-const CORNER: f64 = 0.1;
+/// Shares of the tolerance that rounding to steps may take where a disc sees one straight side: of a side's place, of the penumbra
+/// radius, of corners' radii. It sees at most its own circumference of an outline, which moves density π times as much as such a
+/// side does, 2 π times where the radius grows, and at corners twice: all of this adds up to 0.8 of the tolerance. The rest is for
+/// drawing the mask.
+const SIDE: f64 = 0.11;
+const RADIUS: f64 = 0.055;
+const CORNER: f64 = 0.055;
+const DRAWN: f64 = 0.2;
 
 /// The sizes of the steps.
 struct Steps {
@@ -51,13 +55,19 @@ struct Steps {
 }
 
 impl ShadowKey {
+    /// How wrong the mask may be before it is rounded: what steps leave of the tolerance.
+    pub(super) fn drawn_within(&self) -> Tolerance {
+        Tolerance::at_least(DRAWN * self.tolerance() * 255.0)
+    }
+
+    /// In density.
     fn tolerance(&self) -> f64 {
         f64::from(self.levels) / 65_536.0 / 255.0
     }
 
-    /// The penumbra radius in pixels, and the steps of the rest. A step is twice what rounding may do: a side moved by d
+    /// The penumbra radius in pixels, and the steps of the rest. A step is twice what rounding may do: a straight side moved by d
     /// moves the density by 2 d / (π r), by d where that is more than the pixel's own width allows; a radius larger by its
-    /// share s moves it by s / π; a corner's radius larger by d moves the outline by (sqrt 2 - 1) d.
+    /// share s moves it by s / π there; a corner's radius larger by d moves the outline by (sqrt 2 - 1) d.
     fn steps(tolerance: f64, radius: i32) -> Steps {
         let radius = exp(f64::from(radius) * log1p(2.0 * RADIUS * PI * tolerance));
         let side = 2.0 * SIDE * tolerance * (PI * radius / 2.0).max(1.0);
@@ -107,8 +117,9 @@ fn reach(radius: f64) -> f64 {
 
 impl Shadow {
     /// The key of the shadow's mask and the place for it, on so many pixels a scene unit; none where the shadow is not one
-    /// of a rounded rectangle with circular corners, this is thinner than the steps that keys round to, no [`Grid`] has so many pixels a
-    /// unit, or one mask would be larger than a picture may be.
+    /// of a rounded rectangle with circular corners, this is thinner than the steps that keys round to or larger than 100,000 pixels, no [`Grid`] has so many pixels a
+    /// unit, or one mask would be larger than a picture may be. The mask is within the tolerance before it is rounded, or within 0.25 level
+    /// where the penumbra is narrower than 3 px.
     ///
     /// ```
     /// use penumbral::{Color, Grid, Light, NinePatch, Paint, Scratch, Shape, Tolerance};
@@ -134,6 +145,9 @@ impl Shadow {
         let scale = f64::from(pixels_per_unit);
         let is_scale = (LEAST_SCALE..=MOST_SCALE).contains(&scale);
         let rounded = self.rounded().filter(|_| is_scale && self.radius() > 0.0)?;
+        if (rounded.max - rounded.min).max_element() * scale > LARGEST {
+            return None;
+        }
         let levels = (tolerance.as_levels() * 65_536.0) as u32;
         let share = f64::from(levels) / 65_536.0 / 255.0;
         let radius_step = log1p(2.0 * RADIUS * PI * share);
