@@ -6,6 +6,7 @@
 mod common;
 
 use common::{Random, setting};
+use penumbral::plan::Method;
 use penumbral::{
     Color, DensityMap, FillRule, Light, PixelOptions, Pose, Scene, Scratch, Shape, Surface, Tone,
 };
@@ -272,4 +273,54 @@ fn a_tilted_card_and_a_level_one_hide_their_union() {
         .fold(0.0, f32::max);
     println!("{worst} levels");
     assert!(worst < 1.2, "{worst} levels");
+}
+
+/// Shapes at next to one elevation hide what they would as one, however narrow the penumbra.
+#[test]
+fn hard_shadows_hide_together_what_their_union_does() {
+    let mut scratch = Scratch::new();
+    let exact = PixelOptions::default().with_method(Method::Exact);
+    for radius in [0.0_f32, 0.01, 0.05, 0.1, 0.2, 0.29, 0.35, 0.6, 0.9] {
+        let light = Light::directional([0.0, 0.0], radius).unwrap();
+        let (mut random, mut worst) = (Random::new(17), (0.0, String::new()));
+        for case in 0..60 {
+            let mut place = || [random.between(8.0, 14.0), random.between(8.0, 14.0)];
+            let [[x, y], [u, v], corner] = [place(), place(), place()];
+            let first = Shape::rect(x, y, 12.0, 12.0).unwrap();
+            let second = match case % 3 {
+                0 => first.clone(),
+                1 => Shape::rect(u, y, 12.0, 8.0).unwrap(),
+                _ => {
+                    let points = [[u, v], [u + 13.0, v + 3.0], [u + 4.0, v + 14.0]];
+                    Shape::polygon(&[points], FillRule::NonZero).unwrap()
+                }
+            };
+            let mut shapes = vec![first, second];
+            if case % 2 == 0 {
+                let [x, y] = corner;
+                shapes.push(Shape::circle([x + 6.0, y + 6.0], 7.0).unwrap());
+            }
+            let mut scene = Scene::new([40.0, 40.0], light).unwrap();
+            for (shape, elevation) in shapes.iter().zip([1.0, 1.000_001, 1.000_002]) {
+                scene.push(Surface::new(shape.clone(), elevation)).unwrap();
+            }
+            let shadows = scene.ground_shadows().unwrap();
+            let mut map = DensityMap::default();
+            // What each hides alone is exact, too.
+            shadows.draw(&mut map, &exact, &mut scratch).unwrap();
+            let mut union = vec![0.0; 1600];
+            let one = light.cast_all(&shapes, 1.0, 0.0).unwrap();
+            one.fill_f32(shadows.grid(), &mut union, &exact, &mut scratch)
+                .unwrap();
+            for (pixel, (found, union)) in map.densities().iter().zip(&union).enumerate() {
+                let error = (found - union).abs() * 255.0;
+                if error > worst.0 {
+                    let at = [pixel % 40, pixel / 40];
+                    worst = (error, format!("case {case} at {at:?}: {found}, {union}"));
+                }
+            }
+        }
+        println!("radius {radius}: {worst:?}");
+        assert!(worst.0 <= 0.8, "radius {radius}: {worst:?}");
+    }
 }

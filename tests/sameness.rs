@@ -21,7 +21,7 @@ const GOLDEN: [(&str, u64); 11] = [
     ("nine-patch", 0x0a4c_edc2_38c1_6333),
     ("points", 0x60af_0aa3_2f9e_6c9c),
     ("dithered paint", 0x19a6_f180_d79b_6f45),
-    ("masks", 0x9fa6_92f9_d4c9_4c87),
+    ("masks", 0x9102_5ecb_50a3_aadb),
     ("meshes", 0x7915_6a94_1190_61fc),
     ("pictures", 0x71b5_3d43_220c_f1ca),
     ("svg", 0xcb7a_a555_c91a_35da),

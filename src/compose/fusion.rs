@@ -7,6 +7,7 @@
 
 mod chords;
 mod company;
+mod hard;
 mod meet;
 mod member;
 mod occluder;

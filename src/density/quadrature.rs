@@ -144,6 +144,11 @@ pub(crate) fn disc() -> impl Iterator<Item = (DVec2, f64)> {
     on_disc(gauss(8), 24)
 }
 
+/// The same where the disc is smaller than a pixel whose hard borders are seen from each of its points: 2 x 8.
+pub(crate) fn small_disc() -> impl Iterator<Item = (DVec2, f64)> {
+    on_disc(gauss(2), 8)
+}
+
 /// The same for `exact`: 12 x 36, so many times as many each way.
 pub(crate) fn exact_disc(parts: u32) -> impl Iterator<Item = (DVec2, f64)> {
     on_disc(in_parts(12, parts), 36 * parts)

@@ -1,6 +1,7 @@
 //! Who meets at a pixel, and what that means for the light.
 
 use super::chords::Points;
+use super::hard;
 use super::member::{Kind, Member};
 use super::pixel::Casts;
 use crate::density::lanes::LANES;
@@ -16,6 +17,8 @@ pub(super) struct Company<'a> {
     full: Vec<f32>,
     pub(super) square: Square,
     pub(super) together: Together,
+    /// Whether what those that hide a part of the disc hold back together is told by polygons in a pixel's square.
+    pub(super) is_hard: bool,
 }
 
 #[derive(Clone, Copy)]
@@ -59,6 +62,7 @@ impl<'a> Company<'a> {
             full: Vec::new(),
             square: Square::new(0.0, false),
             together: Together::Alone,
+            is_hard: false,
         };
         let is_opaque = |cast: &&usize| members[**cast].opacity >= 1.0;
         let last = casts.full.iter().find(is_opaque).copied();
@@ -91,6 +95,8 @@ impl<'a> Company<'a> {
             .any(|of| matches!(of.member.kind, Kind::Tilted(_)));
         company.square = Square::new(sides.fold(0.0, f64::max), is_tilted);
         company.together = company.find_together(casts.partial.len());
+        company.is_hard = !matches!(company.together, Together::Any)
+            && company.partial.iter().all(|of| hard::is_hard(of.member));
         company
     }
 
@@ -104,7 +110,8 @@ impl<'a> Company<'a> {
                     (hidden[a.at], hidden[b.at]) = (of_a, of_b);
                     self.held_by_all(&hidden)
                 };
-                let is_known = partial == 2;
+                // Of a hard border few points tell no more than of what it hides together with another.
+                let is_known = partial == 2 && hard::is_hard(a.member) == hard::is_hard(b.member);
                 match at(1.0, 1.0) - at(1.0, 0.0) - at(0.0, 1.0) + at(0.0, 0.0) {
                     0.0 => Together::Alone,
                     cross => Together::Pair { cross, is_known },

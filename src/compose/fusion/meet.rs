@@ -8,6 +8,7 @@ use glam::DVec2;
 
 use super::chords::{Chords, Lane, Part};
 use super::company::{Company, Together};
+use super::hard::Hard;
 use super::member::{Kind, Member};
 use super::occluder::{NearRows, Occluder};
 use super::pixel::{Pixels, Seen};
@@ -53,6 +54,7 @@ pub(super) struct Meet {
     hidden: Vec<f32>,
     /// What both of a pair hide from some pixels that see one line of each.
     shared: Lane,
+    hard: Hard,
 }
 
 impl Meet {
@@ -75,10 +77,14 @@ impl Meet {
             if matches!(company.together, Together::Alone) {
                 continue;
             }
+            let middle = start + DVec2::new((run.start - row.start) as f64, 0.0) + 0.5;
+            if company.is_hard {
+                self.mend_hard(company, middle, pixels, run);
+                continue;
+            }
             if !self.near_rows.contains(&start.y) {
                 self.find_near(members, start.y);
             }
-            let middle = start + DVec2::new((run.start - row.start) as f64, 0.0) + 0.5;
             self.mend_run(level, company, middle, pixels, run);
         }
     }
@@ -99,6 +105,41 @@ impl Meet {
             if let Kind::Level(occluder) = &member.kind {
                 occluder.near_rows(y..y + ROWS, near);
             }
+        }
+    }
+
+    /// Mends pixels that see hard borders alone, the first of which has its middle there.
+    fn mend_hard(
+        &mut self,
+        company: &Company<'_>,
+        middle: DVec2,
+        pixels: &mut Pixels,
+        run: Range<usize>,
+    ) {
+        for (index, pixel) in run.enumerate() {
+            let at = middle + DVec2::new(index as f64, 0.0);
+            self.hard.find(&company.partial, at);
+            let Hard { alone, united, .. } = &self.hard;
+            let more = match &company.together {
+                Together::Pair { cross, is_known } => {
+                    let [a, b] = if *is_known {
+                        pixels.densities(pixel)
+                    } else {
+                        [alone[0] as f32, alone[1] as f32]
+                    };
+                    let shared = alone[0] + alone[1] - united[1];
+                    cross * (shared as f32 - a * b)
+                }
+                Together::Opaque { weights, always } => {
+                    let united = united.iter().map(|&united| united as f32);
+                    let counted = united.zip(weights).map(|(united, weight)| united * weight);
+                    let together = always + counted.sum::<f32>();
+                    let apart = alone.iter().map(|&alone| alone as f32);
+                    together - company.held(apart, &mut self.hidden)
+                }
+                Together::Alone | Together::Any => 0.0,
+            };
+            pixels.mend(pixel, more);
         }
     }
 

@@ -31,7 +31,7 @@ pub(super) struct Loop {
     /// Those of its edges along which chords change faster than pieces of the disc's height tell.
     pub(super) slanted: Vec<[DVec2; 2]>,
     /// All lines, each with the area on its left where y points up.
-    lines: Vec<[DVec2; 2]>,
+    pub(super) lines: Vec<[DVec2; 2]>,
     /// Where the outline turns up or down, and its level lines, from left to right: there the hidden part of a chord begins or
     /// ends at once.
     pub(super) turns: Vec<[DVec2; 2]>,
