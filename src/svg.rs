@@ -68,6 +68,12 @@ impl Svg {
         number(value, self.decimals)
     }
 
+    /// Attributes of a rectangle.
+    pub(crate) fn rectangle(&self, min: DVec2, size: DVec2) -> String {
+        let [x, y, width, height] = [min.x, min.y, size.x, size.y].map(|v| self.coordinate(v));
+        format!("x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\"")
+    }
+
     /// Path data of closed polygons.
     pub(crate) fn path_data(&self, polygons: &[Vec<DVec2>]) -> String {
         let mut data = String::new();

@@ -365,3 +365,15 @@ fn drawn_again(edits: usize, count: usize, elevation: fn(&mut Random) -> f32) ->
     );
     share
 }
+
+#[test]
+fn the_background_of_an_svg_is_as_large_as_what_is_shown() {
+    let light = Light::new([0.2, 0.0, 6.0], 1.0).unwrap();
+    let scene = Scene::new([540.0 / 1024.0; 2], light).unwrap();
+    let scene = scene.with_scale(1024.0).unwrap();
+    let svg = scene.to_svg(Tolerance::ONE_LEVEL).unwrap();
+    let side = svg.split("viewBox=\"0 0 ").nth(1).unwrap();
+    let side = side.split(' ').next().unwrap();
+    let whole = format!("<rect x=\"0\" y=\"0\" width=\"{side}\" height=\"{side}\"");
+    assert!(svg.contains(&whole), "{svg}");
+}

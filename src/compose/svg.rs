@@ -58,7 +58,7 @@ impl Scene {
             svg: Svg::new(grid.pixels_per_unit()),
             levels: Vec::new(),
         };
-        let whole = attributes(DVec2::ZERO, extent);
+        let whole = writer.svg.rectangle(DVec2::ZERO, extent);
         writer
             .svg
             .draw(&format!("<rect {whole} fill=\"{}\"/>", self.background()));
@@ -74,11 +74,6 @@ impl Scene {
         }
         Ok(writer.svg.finish(size, DVec2::ZERO, extent))
     }
-}
-
-fn attributes(min: DVec2, size: DVec2) -> String {
-    let [x, y, width, height] = [min.x, min.y, size.x, size.y].map(|v| number(v, 3));
-    format!("x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\"")
 }
 
 struct Writer<'a> {
@@ -111,7 +106,8 @@ impl Writer<'_> {
             ));
             return Ok(());
         };
-        let around = attributes(receiver.min - 1.0, receiver.max - receiver.min + 2.0);
+        let size = receiver.max - receiver.min + 2.0;
+        let around = self.svg.rectangle(receiver.min - 1.0, size);
         self.svg.define(&format!(
             "<mask id=\"m{rank}\" maskUnits=\"userSpaceOnUse\" {around}>\
              <path fill=\"#fff\" fill-opacity=\"{weight}\" d=\"{data}\"/></mask>",
