@@ -45,7 +45,6 @@ use cells::Cells;
 pub use compact::{CompactMesh, CompactVertex};
 pub use export::meshes_to_svg;
 use field::Field;
-use gentle::Gentle;
 use lighten::lighten;
 use options::Effort;
 pub use options::MeshOptions;
@@ -271,40 +270,6 @@ impl Shadow {
         }
         (Field::Level(Cells::new(&loops, radius)), unsure)
     }
-
-    /// The mesh in strips along the outline, if that is one gentle convex curve.
-    fn gentle(&self, options: &MeshOptions) -> Option<ShadowMesh> {
-        let (levels, radius) = (options.tolerance.as_levels(), self.radius());
-        if options.profile != Profile::Disc || radius == 0.0 {
-            return None;
-        }
-        let flat = radius * GENTLE_FLATNESS;
-        let outline = self.outline(flat);
-        let (min, max) = outline.bounds()?;
-        let center = min.midpoint(max).as_vec2().as_dvec2();
-        let mut polygons = outline.moved(-center).polygons(flat);
-        let points = polygons.pop().filter(|_| polygons.is_empty())?;
-        let curve = Gentle::new(points, radius, flat)?;
-        let far = min.abs().max(max.abs()).max_element() + radius;
-        let rounding = rounding_levels(far, radius);
-        let (mut field, unsure) = self.field(&outline, levels, center);
-        let limit = (levels - rounding) / 255.0 - unsure;
-        if limit <= 0.0 {
-            return None;
-        }
-        let found = curve.mesh(&mut field, limit, options.max_vertices)?;
-        let vertices = found.places.iter().zip(&found.densities);
-        let vertex = |(at, density): (&DVec2, &f64)| MeshVertex {
-            position: (*at + center).as_vec2().to_array(),
-            density: *density as f32,
-        };
-        Some(ShadowMesh {
-            vertices: vertices.map(vertex).collect(),
-            indices: found.triangles.into_flattened(),
-            error_levels: (found.error + unsure) * 255.0 + rounding,
-            complete: true,
-        })
-    }
 }
 
 impl Shadow {
@@ -398,9 +363,6 @@ fn rounding_levels(far: f64, radius: f64) -> f64 {
 fn power_of_two_below(value: f64) -> f64 {
     f64::from_bits(value.to_bits() >> 52 << 52)
 }
-
-/// How far the lines that strips go along may be from gentle curves, over the penumbra radius.
-const GENTLE_FLATNESS: f64 = 1e-3;
 
 /// How far the chords of a hard shadow's arcs may be from them, over its extent.
 const FACET: f64 = 1e-5;

@@ -119,6 +119,8 @@ struct Costs {
     exact_average: f64,
     /// A rounded rectangle's triangles at one level, when its corners are new.
     strips: f64,
+    /// Triangles along a gentle curve at one level.
+    gentle: f64,
     /// A sample of a mesh of halved squares.
     sample: f64,
     /// A triangle of any other mesh at one level.
@@ -139,6 +141,7 @@ const COSTS: Costs = Costs {
     exact: 130.0,
     exact_average: 25.0,
     strips: 1e7,
+    gentle: 3e7,
     sample: 26.0,
     triangle: 4e4,
     hard_triangle: 400.0,
@@ -237,5 +240,12 @@ mod tests {
         assert!(cost(&card, 8.0, 1.0) < cost(&star(5), 8.0, 1.0));
         assert!(cost(&star(5), 8.0, 1.0) < cost(&star(20), 8.0, 1.0));
         assert!((1.0..1e6).contains(&cost(&card, 0.0, 1.0)));
+        let ellipse = Shape::ellipse([80.0, 60.0], [75.0, 50.0]).unwrap();
+        let ellipse = choose(
+            &cast(&ellipse, 10.0),
+            Tolerance::ONE_LEVEL,
+            Target::Triangles,
+        );
+        assert!(ellipse.why.ends_with("strips along a gentle curve"));
     }
 }

@@ -10,6 +10,7 @@ mod curve;
 mod strips;
 
 use core::f64::consts::FRAC_2_PI;
+use std::borrow::Cow;
 
 use glam::DVec2;
 use libm::{ceil, sqrt};
@@ -21,12 +22,18 @@ use super::profile::{Knot, Pieces, Profile};
 use super::samples::Samples;
 use super::search;
 use super::strips::join::RingVertex;
+use super::{MeshOptions, MeshVertex, ShadowMesh, rounding_levels};
+use crate::outline::Outline;
+use crate::shadow::Shadow;
 
 /// How far the chords of the outermost and the innermost ring may be from these, over the width of the strip beside them.
 const BEYOND: f64 = 0.04;
 
 /// Shares of the error that are tried for pieces across.
 const SHARES: u8 = 20;
+
+/// How far the lines that strips go along may be from the curve, over the penumbra radius.
+const FLATNESS: f64 = 1e-3;
 
 /// Error is sampled: between samples it may be larger by the rest.
 const SAMPLED: f64 = 0.97;
@@ -95,9 +102,58 @@ impl search::Strips for Tried<'_> {
     }
 }
 
+impl Shadow {
+    /// Whether the outline is one gentle convex curve.
+    pub(crate) fn is_gentle(&self) -> bool {
+        self.radius() > 0.0 && self.gentle_curve().is_some()
+    }
+
+    /// The outline, a place in its middle that `f32` holds, and the curve about that, if it is one.
+    fn gentle_curve(&self) -> Option<(Cow<'_, Outline>, DVec2, Gentle)> {
+        let radius = self.radius();
+        let flat = radius * FLATNESS;
+        let outline = self.outline(flat);
+        let (min, max) = outline.bounds()?;
+        let center = min.midpoint(max).as_vec2().as_dvec2();
+        let mut polygons = outline.moved(-center).polygons(flat);
+        let points = polygons.pop().filter(|_| polygons.is_empty())?;
+        let curve = Gentle::new(points, radius, flat)?;
+        Some((outline, center, curve))
+    }
+
+    /// The mesh in strips along the outline, if that is one gentle convex curve.
+    pub(super) fn gentle(&self, options: &MeshOptions) -> Option<ShadowMesh> {
+        let (levels, radius) = (options.tolerance.as_levels(), self.radius());
+        if options.profile != Profile::Disc || radius == 0.0 {
+            return None;
+        }
+        let (outline, center, curve) = self.gentle_curve()?;
+        let (min, max) = outline.bounds()?;
+        let far = min.abs().max(max.abs()).max_element() + radius;
+        let rounding = rounding_levels(far, radius);
+        let (mut field, unsure) = self.field(&outline, levels, center);
+        let limit = (levels - rounding) / 255.0 - unsure;
+        if limit <= 0.0 {
+            return None;
+        }
+        let found = curve.mesh(&mut field, limit, options.max_vertices)?;
+        let vertices = found.places.iter().zip(&found.densities);
+        let vertex = |(at, density): (&DVec2, &f64)| MeshVertex {
+            position: (*at + center).as_vec2().to_array(),
+            density: *density as f32,
+        };
+        Some(ShadowMesh {
+            vertices: vertices.map(vertex).collect(),
+            indices: found.triangles.into_flattened(),
+            error_levels: (found.error + unsure) * 255.0 + rounding,
+            complete: true,
+        })
+    }
+}
+
 impl Gentle {
     /// A loop of lines within `flatness` of an outline, if that is one.
-    pub(super) fn new(points: Vec<DVec2>, radius: f64, flatness: f64) -> Option<Self> {
+    fn new(points: Vec<DVec2>, radius: f64, flatness: f64) -> Option<Self> {
         Some(Self {
             curve: Curve::new(points, radius, flatness)?,
             radius,

@@ -15,7 +15,7 @@ pub struct MeshOptions {
 /// How long making a mesh may take, for how few triangles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Effort {
-    /// Halving for outlines of small detail, refinement for all others.
+    /// Strips about rounded rectangles and along gentle curves, halving for outlines of small detail, refinement for all others.
     Usual,
     Quick,
     Few,

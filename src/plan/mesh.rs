@@ -1,5 +1,5 @@
-//! What triangles cost: those of a rounded rectangle are strips, those of small detail halved squares, and all others are refined
-//! until they are right.
+//! What triangles cost: those of a rounded rectangle and along a gentle curve are strips, those of small detail halved squares, and all
+//! others are refined until they are right.
 
 use super::{COSTS, Candidate, Method};
 use crate::mesh::halving;
@@ -23,6 +23,11 @@ pub(super) fn candidate(shadow: &Shadow, levels: f64) -> Candidate {
         (
             COSTS.sample * samples as f64,
             "triangles are asked for: squares are halved, as the outline's detail is small",
+        )
+    } else if shadow.is_gentle() {
+        (
+            COSTS.gentle / coarser,
+            "triangles are asked for: strips along a gentle curve",
         )
     } else {
         (
