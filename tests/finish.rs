@@ -460,8 +460,8 @@ fn scenes_name_what_is_wrong_with_a_finish() {
             "surfaces[0]: finish.rim.steps is 99: give a number from 1 to 64",
         ),
         (
-            r#"{"material":{"ambient":0,"diffuse":2,"specular":0,"shininess":1}}"#,
-            "surfaces[0]: finish.material.diffuse is 2: give a number from 0 to 1",
+            r#"{"material":{"ambient":0,"diffuse":5,"specular":0,"shininess":1}}"#,
+            "surfaces[0]: finish.material.diffuse is 5: give a number from 0 to 4",
         ),
         (
             r#"{"bump":{"image":"dot.png","tile":[1,1],"depth":1e9}}"#,

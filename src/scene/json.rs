@@ -83,8 +83,9 @@ impl Scene {
     /// and `clip`, a shape's fields, outside of which nothing of them is left.
     ///
     /// A light may be directional: `offset` [x, y] and `spread` in place of `x`, `y`, `z` and `radius`
-    /// ([`Light::directional`]). `lights` is a list of further lights, each with its own `key`. Of the tone there are
-    /// `shadow_color` and `blending`, `srgb` (the default) or `linear`. `overlap` is `union` (the default) or `source-over`.
+    /// ([`Light::directional`](crate::Light::directional)). `lights` is a list of further lights, each with its own `key`. Of
+    /// the tone there are `shadow_color` and `blending`, `srgb` (the default) or `linear`. `overlap` is `union` (the default) or
+    /// `source-over`.
     ///
     /// With the feature `finish` a surface may have a `finish` of any of
     ///
@@ -101,7 +102,7 @@ impl Scene {
     /// Unknown fields, and fields of another shape, are refused.
     ///
     /// # Errors
-    /// [`Error::Scene`] with line, column and field.
+    /// [`Error::Scene`](crate::Error::Scene) with line, column and field.
     pub fn from_json(text: &str) -> Result<Self> {
         Self::from_json_with_images(text, &mut |name| {
             Err(format!(
