@@ -7,7 +7,7 @@ use core::ops::Range;
 
 use glam::{DVec2, DVec3};
 
-use crate::apart::around;
+use crate::apart::{around, around_points};
 use crate::density::{PixelOptions, tilted};
 use crate::error::{MAX_COORDINATE, Result};
 use crate::grid::Grid;
@@ -20,6 +20,9 @@ use crate::shape::Shape;
 
 /// How far from a curve of a tilted caster its lines may be, in scene units.
 const FLATNESS: f64 = 5e-4;
+
+/// How high a caster must be over its receiver to shade it, over its extent: by more than what `f32` makes of half a turn.
+const FLAT: f64 = 4.0 * f32::EPSILON as f64;
 
 /// The radius that a point light is taken to have, against its height: its shadows are hard.
 pub(crate) const LEAST_LIGHT: f64 = 1e-7;
@@ -90,11 +93,20 @@ impl TiltedShadow {
                 heights.end - p.z
             })
         });
+        // What lies on its receiver hides none of it, as no level caster does, but for what rounding lifts.
+        let is_raised = |points: &Vec<DVec3>| {
+            let high = points
+                .iter()
+                .map(|p| p.z - heights.start)
+                .fold(0.0, f64::max);
+            around_points(points.iter().map(|p| p.truncate()))
+                .is_some_and(|(min, max)| high > FLAT * (max - min).max_element())
+        };
         let at = |point: DVec2| circle(pose.place(point));
         let origin = at(DVec2::ZERO);
         Self {
             loops: polygons
-                .filter(|points| points.len() > 2)
+                .filter(|points| points.len() > 2 && is_raised(points))
                 .map(|points| points.into_iter().map(&circle).collect())
                 .collect(),
             plane: [

@@ -97,6 +97,20 @@ fn a_card_below_its_receiver_casts_nothing() {
 }
 
 #[test]
+fn a_card_that_lies_on_its_receiver_casts_nothing() {
+    let triangle = [[20.0, 30.0], [70.0, 35.0], [45.0, 80.0]];
+    let triangle = Shape::polygon(&[triangle], FillRule::NonZero).unwrap();
+    for shape in [card(), triangle] {
+        for angle in [0.0, PI, -PI, 2.0 * PI] {
+            let pose = Pose::turned(0.0, [50.0, 60.0], [1.0, 0.3], angle).unwrap();
+            let shadow = light().cast_posed(&shape, &pose, 0.0).unwrap();
+            assert!(shadow.is_empty(), "{angle}");
+        }
+        assert!(light().cast(&shape, 0.0, 0.0).unwrap().is_empty());
+    }
+}
+
+#[test]
 fn a_flipping_card_hides_what_rays_say() {
     let mut worst: f64 = 0.0;
     // Above the ground all the time; then half below it when upright.

@@ -40,7 +40,8 @@ impl MeshOptions {
         self
     }
 
-    /// With another limit on vertices. A mesh that reaches it is not [complete](crate::ShadowMesh::is_complete).
+    /// With another limit on vertices, or as many as the outline's own corners need. A mesh that is kept from its tolerance by that is not
+    /// [complete](crate::ShadowMesh::is_complete).
     #[must_use]
     pub fn with_max_vertices(mut self, max_vertices: usize) -> Self {
         self.max_vertices = max_vertices;
