@@ -24,7 +24,7 @@ pub type Result<T, E = Error> = core::result::Result<T, E>;
 /// |---|---|
 /// | [`NotFinite`](Error::NotFinite) | `Shape::rect(f32::NAN, 0.0, 1.0, 1.0)` |
 /// | [`OutOfRange`](Error::OutOfRange) | `Shape::rect(1e9, 0.0, 1.0, 1.0)`, `Tolerance::levels(65.0)` |
-/// | [`NotPositive`](Error::NotPositive) | `Shape::circle([0.0, 0.0], 0.0)`, a polygon whose points are on one line |
+/// | [`NotPositive`](Error::NotPositive) | `Shape::circle([0.0, 0.0], 0.0)`, a polygon without width or height |
 /// | [`EmptyPath`](Error::EmptyPath) | `Shape::path(&Path::new(), FillRule::NonZero)` |
 /// | [`TooMany`](Error::TooMany) | a polygon of more than [`MAX_SEGMENTS`] points, a scene over its [`Limits`](crate::Limits) |
 /// | [`PathData`](Error::PathData) | `Path::from_svg("M 0 0 L")` |

@@ -183,8 +183,13 @@ impl Shadow {
         };
         let levels = options.tolerance.as_levels();
         let rounding = rounding_levels(far, radius);
-        let share = levels * ROUNDING_SHARE;
-        if rounding > share {
+        // In powers of two, so that shadows at other places go by the same template.
+        let share = if rounding > levels * ROUNDING_SHARE {
+            2.0 * power_of_two_below(rounding)
+        } else {
+            levels * ROUNDING_SHARE
+        };
+        if share > levels * MOST_ROUNDING {
             return Ok(None);
         }
         let error = strips.mesh(
@@ -350,8 +355,10 @@ const COARSEST_RING: f64 = 0.02;
 /// The narrowest penumbra that is drawn, in steps of `f32` at its coordinates.
 const NARROWEST: f64 = 64.0;
 
-/// The part of the tolerance that strips leave to the rounding of their vertices.
+/// The part of the tolerance that strips leave to the rounding of their vertices, and the most that they do where that takes more: a
+/// triangulation would take a hundred times as long.
 const ROUNDING_SHARE: f64 = 1.0 / 256.0;
+const MOST_ROUNDING: f64 = 0.25;
 
 /// How wrong densities may be for coordinates up to `far` that are rounded to `f32`, in levels: density changes by at most 2 / π over the
 /// penumbra radius.

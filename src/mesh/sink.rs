@@ -65,13 +65,20 @@ mod private {
 /// buffers.clear(); // for the next frame: the memory stays
 /// # Ok::<(), penumbral::Error>(())
 /// ```
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct MeshBuffers<I> {
     /// The vertices of all meshes.
     pub vertices: Vec<MeshVertex>,
     /// Three a triangle.
     pub indices: Vec<I>,
     first: u32,
+}
+
+/// What they hold counts, not what was begun.
+impl<I: PartialEq> PartialEq for MeshBuffers<I> {
+    fn eq(&self, other: &Self) -> bool {
+        self.vertices == other.vertices && self.indices == other.indices
+    }
 }
 
 impl<I> Default for MeshBuffers<I> {

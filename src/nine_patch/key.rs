@@ -121,6 +121,10 @@ impl Shadow {
     /// unit, or one mask would be larger than a picture may be. The mask is within the tolerance before it is rounded, or within 0.25 level
     /// where the penumbra is narrower than 3 px.
     ///
+    /// Cards that scroll by whole pixels under a directional light have one key each. Under any other light a shadow is larger than its card
+    /// and moves by more, so that its sides are elsewhere in their pixels at each step: there it pays to draw it anew, as it does where
+    /// cards move by parts of pixels.
+    ///
     /// ```
     /// use penumbral::{Color, Grid, Light, NinePatch, Paint, Scratch, Shape, Tolerance};
     ///
@@ -128,7 +132,7 @@ impl Shadow {
     /// let shadow = Light::android(360.0)?.cast(&card, 8.0, 0.0)?;
     /// let mut scratch = Scratch::new();
     /// let (key, place) = shadow.key(1.0, Tolerance::ONE_LEVEL).unwrap();
-    /// // Kept by `key`, for this card wherever it scrolls.
+    /// // Kept by `key`, for this card wherever it has the same place in its pixels.
     /// let patch = NinePatch::draw(&key, &mut scratch)?;
     ///
     /// let grid = Grid::new([0.0, 0.0], [360, 240], 1.0)?;

@@ -37,6 +37,8 @@ fn sinks_take_what_they_have_room_for() {
     let before = buffers.clone().vertices;
     assert!(matches!(into(&mut buffers), Err(Error::TooMany { .. })));
     assert_eq!(buffers.vertices, before);
+    buffers.clear();
+    assert_eq!(buffers, MeshBuffers::new());
 
     let mut vertices = vec![before[0]; count[0]];
     let mut indices = vec![0_u32; count[1] - 1];

@@ -22,6 +22,30 @@ fn a_card_takes_few_triangles() {
     }
 }
 
+/// Far from the origin rounding takes more of the tolerance, and next to the ground the penumbra is narrow beside it.
+#[test]
+fn cards_far_down_a_list_are_strips_as_well() {
+    let light = Light::android(360.0).unwrap();
+    for elevation in [1.0, 2.0, 8.0] {
+        let mut near = None;
+        for y in [0.0, 300.0, 600.0, 1200.0, 4800.0] {
+            let card = Shape::rounded_rect(24.0, y, 312.0, 80.0, 12.0).unwrap();
+            let shadow = light.cast(&card, elevation, 0.0).unwrap();
+            let mesh = shadow.mesh(levels(1.0));
+            sanity_check(&mesh);
+            let triangles = mesh.triangles().count();
+            let few = *near.get_or_insert(triangles);
+            let worst = dense_error(&shadow, &mesh, 6);
+            println!("{elevation}, y {y}: {triangles} triangles, {worst} levels");
+            assert!(mesh.error_levels() <= 1.0 && worst <= mesh.error_levels());
+            assert!(
+                5 * triangles <= 7 * few,
+                "{elevation}, y {y}: {triangles} of {few}"
+            );
+        }
+    }
+}
+
 #[test]
 fn rounded_rectangles_keep_their_tolerance() {
     rounded_rectangles(40);

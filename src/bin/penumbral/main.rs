@@ -37,7 +37,7 @@ enum Command {
         /// The scene file, JSON.
         scene: PathBuf,
         /// The picture: .png or .svg.
-        #[arg(short)]
+        #[arg(short, long)]
         output: PathBuf,
         /// The largest error of shadows in the SVG, in levels of 255.
         #[arg(long, default_value = "1", value_parser = tolerance)]
@@ -48,7 +48,7 @@ enum Command {
         /// The scene file, JSON.
         scene: PathBuf,
         /// The map: .png.
-        #[arg(short)]
+        #[arg(short, long)]
         output: PathBuf,
         /// The method: auto, exact or mesh.
         #[arg(long, default_value = "auto", value_parser = method)]
@@ -68,7 +68,7 @@ enum Command {
         /// The scene file, JSON.
         scene: PathBuf,
         /// The meshes: .json, .obj or .svg.
-        #[arg(short)]
+        #[arg(short, long)]
         output: PathBuf,
         /// The largest error, in levels of 255.
         #[arg(long, default_value = "1", value_parser = tolerance)]
@@ -89,14 +89,14 @@ enum Command {
     #[cfg(feature = "lab")]
     Atlas {
         /// The folder that all of it is written to.
-        #[arg(short)]
+        #[arg(short, long)]
         output: PathBuf,
     },
     /// Measure every method's time and error, and chart one against the other: pictures, tables and a page.
     #[cfg(feature = "lab")]
     Chart {
         /// The folder that all of it is written to.
-        #[arg(short)]
+        #[arg(short, long)]
         output: PathBuf,
         /// A folder of scenes.
         #[arg(long, default_value = "fixtures/truth")]
