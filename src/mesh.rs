@@ -56,7 +56,7 @@ pub use sink::LyonBuffers;
 pub use sink::{MeshBuffers, MeshIndex, MeshSink, MeshSlices};
 use strips::Strips;
 use tangents::{ProjectionCircle, tangent_loops};
-pub use triangles::{MeshQuality, MeshVertex, ShadowMesh};
+pub use triangles::{Incomplete, MeshQuality, MeshVertex, ShadowMesh};
 
 use crate::apart::around_points;
 use crate::error::Result;
@@ -121,10 +121,7 @@ impl Shadow {
         for &corners in mesh.indices.as_chunks().0 {
             sink.triangle(corners);
         }
-        Ok(MeshQuality {
-            error_levels: mesh.error_levels,
-            complete: mesh.complete,
-        })
+        Ok(MeshQuality::new(mesh.error_levels, mesh.incomplete))
     }
 
     /// The mesh without a triangulation, if the shadow is one of those that do without.
@@ -160,7 +157,7 @@ impl Shadow {
         };
         let refined = self.refined(options);
         let all = gentle.into_iter().chain(strips).chain([refined]);
-        let size = |mesh: &ShadowMesh| (!mesh.complete, mesh.indices.len());
+        let size = |mesh: &ShadowMesh| (!mesh.is_complete(), mesh.indices.len());
         all.min_by_key(size).unwrap_or_else(ShadowMesh::empty)
     }
 
@@ -199,10 +196,7 @@ impl Shadow {
             &mut scratch.meshes.strips,
             sink,
         )?;
-        Ok(error.map(|error| MeshQuality {
-            error_levels: error + rounding,
-            complete: true,
-        }))
+        Ok(error.map(|error| MeshQuality::new(error + rounding, None)))
     }
 
     /// The mesh by triangulation and refinement.
@@ -231,11 +225,7 @@ impl Shadow {
         if radius < step * NARROWEST {
             // `f32` has no room for the rings of such a penumbra: a hard edge is half of density away from it, and at the
             // tip of a sharp corner all.
-            return ShadowMesh {
-                error_levels: 255.0,
-                complete: false,
-                ..umbra::mesh(&outline.polygons(facet), center)
-            };
+            return umbra::mesh(&outline.polygons(facet), center).short_of(Incomplete::Narrow);
         }
 
         let pieces = Pieces::within(levels / 255.0 * SLACK);
@@ -252,7 +242,11 @@ impl Shadow {
             let loops = |knot: &Knot| (*knot, tangent_loops(&circles, knot.t, flat));
             let rings = pieces.knots.iter().map(loops).collect();
             let (field, unsure) = self.field(&outline, levels, center);
-            return Refinement::new(field, options, rings).run(center, step, unsure);
+            let mut mesh = Refinement::new(field, options, rings).run(center, step, unsure);
+            if flat > ring_flatness(radius, levels) {
+                mesh.incomplete = mesh.incomplete.and(Some(Incomplete::Vertices));
+            }
+            return mesh;
         }
     }
 }

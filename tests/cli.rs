@@ -469,6 +469,20 @@ mod mesh {
     }
 
     #[test]
+    fn what_keeps_a_mesh_from_its_tolerance_is_told() {
+        let folder = Folder::with_scene(
+            r#"{"canvas": [200, 200], "light": {"x": 80, "y": 30, "z": 300, "radius": 120}, "surfaces": [
+                {"shape": "rrect", "x": 50, "y": 60, "w": 60, "h": 40, "elevation": 20,
+                 "tilt": {"pivot": [80, 80], "axis": [0, 1], "degrees": 90}}]}"#,
+        );
+        let run = folder.run("mesh scene.json -o out.json --tolerance 4");
+        assert_eq!(run.status, Some(0));
+        let complaint =
+            "penumbral: surfaces[0]: the mesh is not complete: its penumbra is too narrow";
+        assert!(run.stderr.starts_with(complaint), "{}", run.stderr);
+    }
+
+    #[test]
     fn tilted_surfaces_have_their_own_under_each_light_and_images_none() {
         let folder = with_tilted_and_image();
         let run = folder.run("mesh scene.json -o out.json");

@@ -5,7 +5,7 @@
 use core::f32::consts::PI;
 
 use penumbral::{
-    FillRule, Grid, Light, MeshVertex, PixelOptions, Pose, Scratch, ShadowMesh, Shape,
+    FillRule, Grid, Incomplete, Light, MeshVertex, PixelOptions, Pose, Scratch, ShadowMesh, Shape,
     TiltedShadow, Tolerance,
 };
 
@@ -304,6 +304,13 @@ fn meshes_keep_their_tolerance_through_the_whole_flip() {
 }
 
 #[test]
+fn a_shadow_without_end_has_no_mesh_and_says_so() {
+    let mesh = flip(290.0, 60.0, [0.0, 1.0]).mesh(Tolerance::ONE_LEVEL);
+    assert_eq!(mesh.incomplete(), Some(Incomplete::Endless));
+    assert!(mesh.indices().is_empty());
+}
+
+#[test]
 fn meshes_of_casters_that_touch_the_ground_say_so() {
     let hinged = flip(20.0, 90.0, [0.0, 1.0]);
     let mesh = hinged.mesh(Tolerance::levels(2.0).unwrap());
@@ -312,7 +319,7 @@ fn meshes_of_casters_that_touch_the_ground_say_so() {
         mesh.indices().len() / 3,
         mesh.error_levels()
     );
-    assert!(!mesh.is_complete());
+    assert_eq!(mesh.incomplete(), Some(Incomplete::Narrow));
     // All but a few pixels about the two points where the penumbra begins are right.
     let bounds = hinged.bounds().unwrap();
     let size = [0, 1].map(|i| (bounds.max[i] - bounds.min[i]) as u32 + 1);
@@ -335,7 +342,7 @@ fn a_hard_shadow_of_a_tilted_caster_is_filled() {
     let pose = Pose::turned(40.0, [80.0, 80.0], [0.0, 1.0], 0.6).unwrap();
     let shadow = light.cast_posed(&card(), &pose, 0.0).unwrap();
     let mesh = shadow.mesh(Tolerance::ONE_LEVEL);
-    assert!(!mesh.is_complete());
+    assert_eq!(mesh.incomplete(), Some(Incomplete::Narrow));
     let area: f64 = mesh
         .triangles()
         .map(|corners| {

@@ -146,7 +146,7 @@ impl Shadow {
             vertices: vertices.map(vertex).collect(),
             indices: found.triangles.into_flattened(),
             error_levels: (found.error + unsure) * 255.0 + rounding,
-            complete: true,
+            incomplete: None,
         })
     }
 }

@@ -338,10 +338,7 @@ impl HalvingScratch {
         for corners in &self.corners {
             sink.triangle(corners.map(|key| self.numbers[key as usize]));
         }
-        Ok(Some(MeshQuality {
-            error_levels: levels,
-            complete: true,
-        }))
+        Ok(Some(MeshQuality::new(levels, None)))
     }
 
     /// Puts the triangles on their sides of the cuts, and rectangles between the sides.

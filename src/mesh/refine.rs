@@ -17,7 +17,7 @@ use super::profile::Profile;
 use super::regions::{Face, Region, Triangles, Vertex, faces};
 use super::settle::settle;
 use super::thin::{Corner, TRIED, Thinning, Triangle};
-use super::{Effort, MeshOptions, MeshVertex, Ring, ShadowMesh};
+use super::{Effort, Incomplete, MeshOptions, MeshVertex, Ring, ShadowMesh};
 use crate::outline::sides;
 
 /// Rounds of refinement at most. Each halves the larger triangles: the finest tolerance takes about 12; but the last vertices between a
@@ -88,6 +88,7 @@ impl Refinement {
         let noise = unsure + rounding * FRAC_2_PI / self.measure.radius();
         let tolerance = self.options.tolerance.as_levels() / 255.0;
         let limit = SAMPLED * (tolerance - noise).max(LEAST_SHARE * tolerance);
+        let mut stopped = Incomplete::Rounds;
         for _ in 0..ROUNDS {
             let faces = self.faces(Region::Penumbra);
             let mut wrong = self.wrong(&faces, limit, false);
@@ -103,10 +104,18 @@ impl Refinement {
                 self.mend(key, limit);
             }
             if self.triangles.num_vertices() == before {
+                stopped = if before >= self.options.max_vertices {
+                    Incomplete::Vertices
+                } else {
+                    Incomplete::Narrow
+                };
                 break;
             }
         }
-        self.finish(center, limit, noise, rounding)
+        if self.broken {
+            stopped = Incomplete::Edges;
+        }
+        self.finish(center, limit, noise, rounding, stopped)
     }
 
     /// The faces that are wrong by more than `limit` where a vertex would mend it, as far as sampled or surely.
@@ -285,7 +294,15 @@ impl Refinement {
         (density - self.measure.target(point)).abs()
     }
 
-    fn finish(mut self, center: DVec2, limit: f64, noise: f64, rounding: f64) -> ShadowMesh {
+    /// The mesh, which is short of its tolerance, if it is, for why refinement `stopped`.
+    fn finish(
+        mut self,
+        center: DVec2,
+        limit: f64,
+        noise: f64,
+        rounding: f64,
+        stopped: Incomplete,
+    ) -> ShadowMesh {
         let mut mesh = ShadowMesh::empty();
         let (corners, triangles) = self.all(limit);
         let mut thinning = Thinning::new(&mut self.measure, limit, rounding, corners, triangles);
@@ -308,11 +325,11 @@ impl Refinement {
                 mesh.vertices.len() as u32 - 1
             })
         };
-        let mut error = thinning.cut;
+        let (mut error, mut complete) = (thinning.cut, !self.broken);
         let mut triangles = Vec::new();
         for triangle in thinning.triangles() {
             error = error.max(triangle.exact_error);
-            mesh.complete &= triangle.error <= limit;
+            complete &= triangle.error <= limit;
             if triangle.region != Region::Outside {
                 triangles.push(
                     triangle
@@ -324,7 +341,8 @@ impl Refinement {
         error = error / SAMPLED + noise;
         mesh.error_levels = if self.broken { 255.0 } else { error * 255.0 };
         let kept = mesh.error_levels <= self.options.tolerance.as_levels();
-        mesh.complete &= !self.broken && (kept || self.options.profile != Profile::Disc);
+        complete &= kept || self.options.profile != Profile::Disc;
+        mesh.incomplete = (!complete).then_some(stopped);
         mesh.indices = settle(&mesh.vertices, triangles);
         mesh
     }

@@ -9,7 +9,7 @@ use super::field::Field;
 use super::profile::{Knot, Pieces};
 use super::refine::Refinement;
 use super::tangents::{ProjectionCircle, tangent_loops, tangent_normal};
-use super::{MeshOptions, NARROWEST, SLACK, ShadowMesh, ring_flatness, umbra};
+use super::{Incomplete, MeshOptions, NARROWEST, SLACK, ShadowMesh, ring_flatness, umbra};
 use crate::error::MAX_COORDINATE;
 use crate::outline::{Winding, resolve_loops, sides};
 use crate::path::{FillRule, arc_steps};
@@ -23,7 +23,7 @@ const SAMPLED: f64 = 1.0 / 8.0;
 
 impl TiltedShadow {
     /// Triangles with a density at each vertex, within the tolerance of [`TiltedShadow::density_at`] wherever they are
-    /// interpolated and outside of them, unless the mesh says that it is not [complete](ShadowMesh::is_complete).
+    /// interpolated and outside of them, unless the mesh says what it is [short of](ShadowMesh::incomplete).
     ///
     /// It is not complete where the caster touches the receiver, since the penumbra narrows there to nothing: what is wrong
     /// is as small as `f32` allows; and not where the light is a point, or next to one: then it fills the hard shadow, and its error
@@ -47,13 +47,8 @@ impl TiltedShadow {
             return ShadowMesh::empty();
         };
         let reach = min.abs().max(max.abs()).max_element();
-        let hard = |mesh| ShadowMesh {
-            error_levels: 255.0,
-            complete: false,
-            ..mesh
-        };
         if reach >= MAX_COORDINATE {
-            return hard(ShadowMesh::empty());
+            return ShadowMesh::empty().short_of(Incomplete::Endless);
         }
         // As for level casters: about a centre that `f32` holds.
         let center = min.midpoint(max).as_vec2().as_dvec2();
@@ -82,7 +77,7 @@ impl TiltedShadow {
             };
             let loops: Vec<Vec<DVec2>> = circles.iter().map(centers).collect();
             let loops = resolve_loops(&loops, Winding::Rule(FillRule::NonZero), false);
-            return hard(umbra::mesh(&loops, center));
+            return umbra::mesh(&loops, center).short_of(Incomplete::Narrow);
         }
         let radius = least.max(most * SMALLEST);
         let levels = options.tolerance.as_levels();

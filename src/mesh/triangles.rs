@@ -1,8 +1,10 @@
 //! Triangles that are made and what became of them.
 
 use glam::DVec2;
+use thiserror::Error;
 
 use super::MeshBuffers;
+use crate::error::MAX_COORDINATE;
 
 /// A vertex: 12 bytes, as a GPU takes it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,7 +29,7 @@ pub struct ShadowMesh {
     pub(super) vertices: Vec<MeshVertex>,
     pub(super) indices: Vec<u32>,
     pub(super) error_levels: f64,
-    pub(super) complete: bool,
+    pub(super) incomplete: Option<Incomplete>,
 }
 
 impl ShadowMesh {
@@ -62,7 +64,13 @@ impl ShadowMesh {
     /// Whether the tolerance was reached: before the limit on vertices, and in spite of rounding.
     #[must_use]
     pub fn is_complete(&self) -> bool {
-        self.complete
+        self.incomplete.is_none()
+    }
+
+    /// What kept the mesh from its tolerance, unless it is complete.
+    #[must_use]
+    pub fn incomplete(&self) -> Option<Incomplete> {
+        self.incomplete
     }
 
     /// Triangles that were made elsewhere, to be drawn as they are.
@@ -80,7 +88,16 @@ impl ShadowMesh {
             vertices: buffers.vertices,
             indices: buffers.indices,
             error_levels: quality.error_levels,
-            complete: quality.complete,
+            incomplete: quality.incomplete,
+        }
+    }
+
+    /// The same, which may be wrong by all there is.
+    pub(super) fn short_of(self, reason: Incomplete) -> Self {
+        Self {
+            error_levels: 255.0,
+            incomplete: Some(reason),
+            ..self
         }
     }
 
@@ -89,9 +106,35 @@ impl ShadowMesh {
             vertices: Vec::new(),
             indices: Vec::new(),
             error_levels: 0.0,
-            complete: true,
+            incomplete: None,
         }
     }
+}
+
+/// What keeps a mesh from its tolerance.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum Incomplete {
+    /// The limit on vertices was reached ([`MeshOptions::with_max_vertices`](crate::MeshOptions::with_max_vertices)).
+    #[error("it reached the limit on vertices: allow more of them, or a larger tolerance")]
+    Vertices,
+    /// The penumbra is too narrow for positions in `f32`: everywhere, at large coordinates or under a light next to a point, or in
+    /// places, as where a tilted caster touches its receiver.
+    #[error(
+        "its penumbra is too narrow for positions in single precision, everywhere or where the caster touches its receiver"
+    )]
+    Narrow,
+    /// Vertices were added for as many rounds as there are.
+    #[error("it took too many rounds to refine: allow a larger tolerance")]
+    Rounds,
+    /// The shadow passes [`MAX_COORDINATE`](crate::MAX_COORDINATE), as that of a caster does which reaches the light's plane.
+    #[error(
+        "the shadow has no end within {MAX_COORDINATE} units: move its caster away from the light"
+    )]
+    Endless,
+    /// An edge of the penumbra could not be triangulated.
+    #[error("an edge of its penumbra could not be triangulated")]
+    Edges,
 }
 
 /// What became of a mesh.
@@ -102,4 +145,16 @@ pub struct MeshQuality {
     pub error_levels: f64,
     /// As [`ShadowMesh::is_complete`].
     pub complete: bool,
+    /// As [`ShadowMesh::incomplete`].
+    pub incomplete: Option<Incomplete>,
+}
+
+impl MeshQuality {
+    pub(super) fn new(error_levels: f64, incomplete: Option<Incomplete>) -> Self {
+        Self {
+            error_levels,
+            complete: incomplete.is_none(),
+            incomplete,
+        }
+    }
 }

@@ -10,7 +10,7 @@ use lyon::tessellation::{
 };
 
 use super::settle::settle;
-use super::{MeshVertex, ShadowMesh};
+use super::{Incomplete, MeshVertex, ShadowMesh};
 
 /// A vertex of a loop: where it is and its index in the mesh.
 #[derive(Debug, Clone, Copy)]
@@ -94,12 +94,11 @@ pub(super) fn mesh(loops: &[Vec<DVec2>], center: DVec2) -> ShadowMesh {
         })
         .collect();
     match fill(&loops, |position| add(DVec2::from(position.map(f64::from)))) {
-        Some(triangles) => mesh.indices = settle(&mesh.vertices, triangles),
-        None => {
-            // The loops are finite and few enough, so lyon has no reason; but a mesh without its umbra must say so.
-            mesh.error_levels = 255.0;
-            mesh.complete = false;
+        Some(triangles) => {
+            mesh.indices = settle(&mesh.vertices, triangles);
+            mesh
         }
+        // The loops are finite and few enough, so lyon has no reason; but a mesh without its umbra must say so.
+        None => mesh.short_of(Incomplete::Edges),
     }
-    mesh
 }

@@ -3,7 +3,9 @@
 use std::fs;
 use std::path::Path;
 
-use penumbral::{FillRule, Grid, Image, Light, MeshOptions, Scene, Shadow, Shape, Tolerance};
+use penumbral::{
+    FillRule, Grid, Image, Incomplete, Light, MeshOptions, Scene, Shadow, Shape, Tolerance,
+};
 
 use crate::checks::*;
 
@@ -250,7 +252,7 @@ fn a_limit_on_vertices_is_reported() {
     let card = Shape::rounded_rect(30.0, 100.0, 300.0, 200.0, 12.0).unwrap();
     let shadow = light.cast(&card, 8.0, 0.0).unwrap();
     let mesh = shadow.mesh(MeshOptions::new(levels(0.5)).with_max_vertices(300));
-    assert!(!mesh.is_complete());
+    assert_eq!(mesh.incomplete(), Some(Incomplete::Vertices));
     assert!(mesh.error_levels() > 0.5);
     sanity_check(&mesh);
 }
@@ -381,7 +383,7 @@ fn a_penumbra_too_narrow_for_its_coordinates_states_what_corners_lose() {
     };
     let worst = densities.iter().enumerate().map(error).fold(0.0, f64::max);
     println!("{worst} levels, stated {}", mesh.error_levels());
-    assert!(!mesh.is_complete());
+    assert_eq!(mesh.incomplete(), Some(Incomplete::Narrow));
     assert!(worst <= mesh.error_levels(), "{worst}");
 }
 

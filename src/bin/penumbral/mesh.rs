@@ -62,12 +62,14 @@ pub(crate) fn run(path: &Path, file: &Path, options: MeshOptions) -> Result<(), 
             ));
         }
     }
-    for made in made.iter().filter(|made| !made.mesh.is_complete()) {
-        output::complain(&format!(
-            "{}: the mesh is not complete: it is up to {:.2} levels wrong",
-            made.field,
-            made.mesh.error_levels().min(255.0)
-        ));
+    for made in &made {
+        if let Some(reason) = made.mesh.incomplete() {
+            output::complain(&format!(
+                "{}: the mesh is not complete: {reason}; it is up to {:.2} levels wrong",
+                made.field,
+                made.mesh.error_levels().min(255.0)
+            ));
+        }
     }
     Ok(())
 }
