@@ -29,7 +29,7 @@ pub(crate) const LEAST_LIGHT: f64 = 1e-7;
 
 /// A projection circle in homogeneous form, finite where the caster meets its receiver and where it meets the light's plane:
 /// its centre is `center / scale`, its radius `radius / scale`. All three are linear along a straight edge of the caster.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Circle {
     pub(crate) center: DVec2,
     pub(crate) scale: f64,
@@ -55,6 +55,15 @@ impl Circle {
             center: self.center - other.center,
             scale: self.scale - other.scale,
             radius: self.radius - other.radius,
+        }
+    }
+
+    /// The circle a share of the way along a straight edge to another.
+    pub(crate) fn lerp(&self, other: &Self, share: f64) -> Self {
+        Self {
+            center: self.center.lerp(other.center, share),
+            scale: self.scale + (other.scale - self.scale) * share,
+            radius: self.radius + (other.radius - self.radius) * share,
         }
     }
 

@@ -19,7 +19,7 @@ use crate::outline::{Edge, clip_to_box, closed_lines};
 pub(super) const NOISE: f64 = 8e-6;
 
 /// The largest side of the smallest cells, in penumbra radii: much smaller ones would hold nearly the same lines.
-const SIDE: f64 = 0.75;
+pub(super) const SIDE: f64 = 0.75;
 
 /// The most halvings: more than `f32` has digits for places.
 const MOST_DEPTH: u32 = 30;
@@ -238,33 +238,33 @@ impl Cell {
             }
             for lane in 0..LANES {
                 let start = [from[0] - at[0][lane], from[1] - at[1][lane]];
-                sums[lane] += side.area(start, [before[lane], halves[lane]]);
+                let halves = [before[lane], halves[lane]];
+                sums[lane] += line_area(start, side.along, side.length, halves);
             }
         }
     }
 }
 
-impl Side {
-    /// The same of one line that begins at `start`, seen from a disc's centre, with [`half_disc`] at its two ends.
-    #[inline(always)]
-    fn area(&self, start: [f32; 2], halves: [f32; 2]) -> f32 {
-        let [along_x, along_y] = self.along;
-        // From the line's start: the foot of the centre, and where the line enters the disc and leaves it. A line that
-        // misses the disc turns from before to after at its foot.
-        let distance = start[0] * along_y - start[1] * along_x;
-        let foot = -(start[0] * along_x + start[1] * along_y);
-        let half_chord = (1.0 - distance * distance).max(0.0).sqrt();
-        let enter = (foot - half_chord).max(0.0).min(self.length) - foot;
-        let leave = (foot + half_chord).max(0.0).min(self.length) - foot;
-        let (foot_x, foot_y) = (distance * along_y, -distance * along_x);
-        let inside = (foot_x + 0.5 * along_x * (enter + leave)) * along_y * (leave - enter);
-        // Outside it lies on one side of the disc as a whole.
-        let before = half_disc(foot_y + along_y * enter) - halves[0];
-        let after = halves[1] - half_disc(foot_y + along_y * leave);
-        let chord_x = along_x * half_chord;
-        let sides = [foot_x - chord_x, foot_x + chord_x].map(|x| 1.0_f32.copysign(x));
-        inside * FRAC_1_PI + before * sides[0] + after * sides[1]
-    }
+/// The same of one line that begins at `start`, seen from a disc's centre, and leads in the direction of the unit vector `along`, with
+/// [`half_disc`] at its two ends.
+#[inline(always)]
+pub(super) fn line_area(start: [f32; 2], along: [f32; 2], length: f32, halves: [f32; 2]) -> f32 {
+    let [along_x, along_y] = along;
+    // From the line's start: the foot of the centre, and where the line enters the disc and leaves it. A line that
+    // misses the disc turns from before to after at its foot.
+    let distance = start[0] * along_y - start[1] * along_x;
+    let foot = -(start[0] * along_x + start[1] * along_y);
+    let half_chord = (1.0 - distance * distance).max(0.0).sqrt();
+    let enter = (foot - half_chord).max(0.0).min(length) - foot;
+    let leave = (foot + half_chord).max(0.0).min(length) - foot;
+    let (foot_x, foot_y) = (distance * along_y, -distance * along_x);
+    let inside = (foot_x + 0.5 * along_x * (enter + leave)) * along_y * (leave - enter);
+    // Outside it lies on one side of the disc as a whole.
+    let before = half_disc(foot_y + along_y * enter) - halves[0];
+    let after = halves[1] - half_disc(foot_y + along_y * leave);
+    let chord_x = along_x * half_chord;
+    let sides = [foot_x - chord_x, foot_x + chord_x].map(|x| 1.0_f32.copysign(x));
+    inside * FRAC_1_PI + before * sides[0] + after * sides[1]
 }
 
 #[cfg(test)]

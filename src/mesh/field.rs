@@ -3,18 +3,14 @@
 use glam::DVec2;
 
 use super::cells::Cells;
-use crate::density::tilted;
-use crate::tilted::Circle;
+use super::tilted::TiltedCells;
 
 /// The density at any point of one shadow.
 pub(super) enum Field {
     /// Of one radius.
     Level(Cells),
     /// Of many: samples go by this one.
-    Tilted {
-        loops: Vec<Vec<Circle>>,
-        radius: f64,
-    },
+    Tilted { cells: TiltedCells, radius: f64 },
 }
 
 impl Field {
@@ -30,7 +26,7 @@ impl Field {
     pub(super) fn at(&mut self, point: DVec2) -> f64 {
         match self {
             Self::Level(cells) => cells.at(point),
-            Self::Tilted { loops, .. } => tilted::at_point(loops, point),
+            Self::Tilted { cells, .. } => cells.at(point),
         }
     }
 
@@ -38,11 +34,7 @@ impl Field {
     pub(super) fn at_all(&mut self, points: &[DVec2], densities: &mut [f64]) {
         match self {
             Self::Level(cells) => cells.at_all(points, densities),
-            Self::Tilted { loops, .. } => {
-                for (density, &point) in densities.iter_mut().zip(points) {
-                    *density = tilted::at_point(loops, point);
-                }
-            }
+            Self::Tilted { cells, .. } => cells.at_all(points, densities),
         }
     }
 }

@@ -1,15 +1,25 @@
 //! Meshes of casters that are not parallel to the light: the tangent construction with circles of many radii.
 
+mod cells;
+mod fewer;
+
 use core::f64::consts::{FRAC_2_PI, TAU};
 
 use glam::DVec2;
 use libm::{cos, sin};
 
+pub(super) use cells::TiltedCells;
+use fewer::{fewer, fewer_within};
+
+use super::cells::NOISE;
 use super::field::Field;
 use super::profile::{Knot, Pieces};
 use super::refine::Refinement;
 use super::tangents::{ProjectionCircle, tangent_loops, tangent_normal};
-use super::{Incomplete, MeshOptions, NARROWEST, SLACK, ShadowMesh, ring_flatness, umbra};
+use super::{
+    CURVED, FIELD_SHARE, Incomplete, MeshOptions, NARROWEST, SLACK, ShadowMesh, ring_flatness,
+    umbra,
+};
 use crate::error::MAX_COORDINATE;
 use crate::outline::{Winding, resolve_loops, sides};
 use crate::path::{FillRule, arc_steps};
@@ -20,6 +30,10 @@ const SMALLEST: f64 = 1.0 / 64.0;
 
 /// The smallest radius that samples go by: triangles where it is smaller are small themselves.
 const SAMPLED: f64 = 1.0 / 8.0;
+
+/// The part of that where the caster is seen edge-on from within the shadow: what is seen of it there is as narrow as the caster is flat,
+/// and crests of the error between samples were an eighth higher than any of them.
+const EDGE_ON: f64 = 0.5;
 
 impl TiltedShadow {
     /// Triangles with a density at each vertex, within the tolerance of [`TiltedShadow::density_at`] wherever they are
@@ -61,11 +75,14 @@ impl TiltedShadow {
                 .collect(),
             plane: self.plane.each_ref().map(place),
         };
-        let circles: Vec<Vec<ProjectionCircle>> = seen
-            .loops
-            .iter()
-            .map(|circles| circles.iter().map(projected).collect())
-            .collect();
+        let levels = options.tolerance.as_levels();
+        let share = ring_flatness(1.0, levels);
+        // As for level casters: rings' vertices are refinement's to add.
+        let ring = |circles: &Vec<Circle>| {
+            let (circles, _) = fewer(circles, share);
+            circles.iter().map(projected).collect()
+        };
+        let circles: Vec<Vec<ProjectionCircle>> = seen.loops.iter().map(ring).collect();
         let radii = circles.iter().flatten().map(|circle| circle.radius);
         let (least, most) = radii.fold((f64::MAX, 0.0), |(least, most), radius| {
             (radius.min(least), radius.max(most))
@@ -80,8 +97,6 @@ impl TiltedShadow {
             return umbra::mesh(&loops, center).short_of(Incomplete::Narrow);
         }
         let radius = least.max(most * SMALLEST);
-        let levels = options.tolerance.as_levels();
-        let share = ring_flatness(1.0, levels);
         let facing = seen.facing([min - center, max - center]);
         let pieces = Pieces::within(levels / 255.0 * SLACK);
         let count = circles.iter().map(Vec::len).sum::<usize>() * pieces.knots.len();
@@ -113,11 +128,19 @@ impl TiltedShadow {
                 ]
             }
         };
-        let sampled = least.max(most * SAMPLED);
+        // Where the caster touches its receiver there is no end to samples.
+        let part = if facing.is_some() || least < radius {
+            1.0
+        } else {
+            EDGE_ON
+        };
+        let sampled = least.max(most * SAMPLED) * part;
         // Where the penumbra is narrower than samples go by, rounding counts for more.
-        let unsure = step * FRAC_2_PI * (1.0 / radius - 1.0 / sampled);
+        let rounding = step * FRAC_2_PI * (1.0 / radius - 1.0 / sampled);
+        let (loops, lost) = fewer_within(&seen.loops, CURVED * FIELD_SHARE * levels / 255.0);
+        let unsure = rounding + lost + NOISE;
         let field = Field::Tilted {
-            loops: seen.loops,
+            cells: TiltedCells::new(loops, [min - center, max - center], sampled),
             radius: sampled,
         };
         Refinement::new(field, options, rings).run(center, step, unsure)
