@@ -50,6 +50,14 @@ impl Circle {
         }
     }
 
+    /// The same where rounding put a place at which the caster is cut below its receiver.
+    fn real(self) -> Self {
+        Self {
+            radius: if self.radius > 0.0 { self.radius } else { 0.0 },
+            ..self
+        }
+    }
+
     fn minus(&self, other: &Self) -> Self {
         Self {
             center: self.center - other.center,
@@ -116,7 +124,7 @@ impl TiltedShadow {
         Self {
             loops: polygons
                 .filter(|points| points.len() > 2 && is_raised(points))
-                .map(|points| points.into_iter().map(&circle).collect())
+                .map(|points| points.into_iter().map(&circle).map(Circle::real).collect())
                 .collect(),
             plane: [
                 origin,

@@ -173,12 +173,8 @@ impl Painter {
                 .iter()
                 .map(|circle| Seen {
                     at: circle.seen_from(middle),
-                    // Where the caster is cut at its receiver, rounding leaves radii a little below 0.
-                    motion: if circle.radius > 0.0 {
-                        reach * circle.scale / circle.radius
-                    } else {
-                        f64::INFINITY
-                    },
+                    // Without end where the caster touches its receiver.
+                    motion: reach * circle.scale / circle.radius,
                 })
                 .collect();
             let count = circles.len();
@@ -290,7 +286,7 @@ impl Painter {
         // Beyond where it touches the receiver the plane goes on below, by as much.
         let radius = (at(|circle| circle.radius) / at(|circle| circle.scale)).abs();
         if radius.is_finite() {
-            radius.clamp(self.radii.start.max(0.0), self.radii.end)
+            radius.clamp(self.radii.start, self.radii.end)
         } else {
             self.radii.start
         }
