@@ -79,10 +79,10 @@
 //! |---|---|---|
 //! | `raster` (default) | [`Renderer`]: pictures on tiny-skia pixmaps; paths from tiny-skia | tiny-skia |
 //! | `svg-path` | [`Path::from_svg`] | svgtypes |
-//! | `scene` | [`Scene::from_json`] | `serde`, `serde_json`, `svg-path` |
+//! | `scene` | [`Scene::from_json`] | serde, `serde_json`, `serde_path_to_error`, `svg-path` |
 //! | `cli` | the command line `penumbral` | clap, image, indicatif, `raster`, `scene` |
 //! | `lyon`, `kurbo` | paths from these crates, meshes into lyon's buffers | kurbo |
-//! | `lab` | `lab`: the laboratory, and the commands `chart` and `atlas`; no toolkit needs it | |
+//! | `lab` | `lab`: the laboratory, and the commands `chart` and `atlas`; no toolkit needs it | base64, plotters and a font |
 //! | `finish` | `finish`: rims that catch the light, with `raster` in pictures, with `scene` in scenes; nothing is computed where no surface has one | |
 //! | `rayon` | [`Shadow::blend_rgba8_in_bands`](crate::Shadow), [`Shadow::fill_a8_in_bands`](crate::Shadow): drawing on several threads | rayon |
 //!
@@ -90,6 +90,8 @@
 //!
 //! The same input gives the same bits on every machine. A patch release may change densities by no more than the stated
 //! error of their method, and meshes in any way that keeps their tolerance: compare pictures, not vertices.
+
+#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
 
 mod apart;
 mod compose;

@@ -221,7 +221,7 @@ impl Shadow {
         if radius == 0.0 {
             return umbra::mesh(&outline.polygons(facet), center);
         }
-        let step = min.abs().max(max.abs()).max_element() * f64::from(f32::EPSILON);
+        let step = step(min, max);
         if radius < step * NARROWEST {
             // `f32` has no room for the rings of such a penumbra: a hard edge is half of density away from it, and at the
             // tip of a sharp corner all.
@@ -345,6 +345,11 @@ fn ring_flatness(radius: f64, levels: f64) -> f64 {
 
 /// The same at large tolerances: beyond, rings could cross.
 const COARSEST_RING: f64 = 0.02;
+
+/// How far `f32` may tell places of a box apart.
+fn step(min: DVec2, max: DVec2) -> f64 {
+    min.abs().max(max.abs()).max_element() * f64::from(f32::EPSILON)
+}
 
 /// The narrowest penumbra that is drawn, in steps of `f32` at its coordinates.
 const NARROWEST: f64 = 64.0;

@@ -116,8 +116,9 @@ impl NinePatch {
         let height = i64::from(grid.height());
         let on_grid = |place: [i64; 2], axis: usize| place[axis].saturating_sub(first[axis]);
         for row in on_grid(place.min, 1).max(0)..on_grid(place.max, 1).min(height) {
-            let down = row + first[1] - place.min[1];
-            let up = place.max[1] - place.min[1] - down;
+            let at = row + first[1];
+            let down = at.saturating_sub(place.min[1]);
+            let up = place.max[1].saturating_sub(at);
             // Of the stretched rows all are the one between the insets.
             let from = if down < top {
                 down
@@ -158,10 +159,12 @@ impl NinePatch {
                 canvas.coverage(row, first as u32, mask);
             }
         };
-        part(start, start + left, &mask[..left as usize]);
+        // A place may be as far away as numbers go.
+        let stretched = start.saturating_add(left)..end.saturating_sub(right);
+        part(start, stretched.start, &mask[..left as usize]);
         if self.stretches[0] {
-            part(end - right, end, &mask[left as usize + 1..]);
-            let (first, last) = (on_grid(start + left), on_grid(end - right));
+            part(stretched.end, end, &mask[left as usize + 1..]);
+            let (first, last) = (on_grid(stretched.start), on_grid(stretched.end));
             if first < last {
                 let density = blend::density(mask[left as usize]);
                 canvas.constant(row..row + 1, first as u32..last as u32, density);

@@ -7,6 +7,7 @@ mod parts;
 use glam::{DAffine2, DVec2};
 
 pub(crate) use arc::{EllipseArc, arc_steps};
+pub(crate) use flatten::lines;
 pub(crate) use parts::{Curve, Part};
 
 use crate::error::{self, Error, MAX_SEGMENTS, Result};

@@ -290,6 +290,12 @@ impl Shape {
         around_points(points)
     }
 
+    /// The larger side of that box.
+    pub(crate) fn extent(&self) -> f64 {
+        self.hull()
+            .map_or(0.0, |(min, max)| (max - min).max_element())
+    }
+
     /// A rectangle with round corners that fit, none of whose numbers is rounded.
     pub(crate) fn of_box(min: DVec2, size: DVec2, radii: [f64; 4]) -> Self {
         Self::simple(rounded_rect_contour(min, size, radii.map(DVec2::splat)))

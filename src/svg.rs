@@ -53,7 +53,10 @@ fn painted(attribute: &str, color: Color) -> String {
 impl Svg {
     /// An empty document that will be seen at `scale` pixels a scene unit.
     pub(crate) fn new(scale: f64) -> Self {
-        let decimals = 3 + (0..4).filter(|&power| scale > 10.0_f64.powi(power)).count();
+        let decimals = 3 + [1.0, 10.0, 100.0, 1000.0]
+            .iter()
+            .filter(|&&least| scale > least)
+            .count();
         Self {
             scale,
             decimals,

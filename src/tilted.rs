@@ -3,6 +3,7 @@
 //! Each of the caster's vertices is a projection circle of its own radius. Seen from a point of the receiver, the caster covers
 //! of the light's disc the polygon of the circles' centres in the unit of their radii, about the point.
 
+use core::f64::consts::FRAC_PI_2;
 use core::ops::Range;
 
 use glam::{DVec2, DVec3};
@@ -18,8 +19,12 @@ use crate::scratch::Scratch;
 use crate::shadow::Bounds;
 use crate::shape::Shape;
 
-/// How far from a curve of a tilted caster its lines may be, in scene units.
-const FLATNESS: f64 = 5e-4;
+/// How much of the light's disc there may be between a curve of a tilted caster and its lines: 1/50 of a level.
+const CURVED: f64 = 0.02 / 255.0;
+
+/// The finest that lines are, over the larger side of the caster's box: where it touches its receiver, and where the light is a point,
+/// no lines are fine enough for every disc.
+const FINEST: f64 = 1.0 / 1_048_576.0;
 
 /// How high a caster must be over its receiver to shade it, over its extent: by more than what `f32` makes of half a turn.
 const FLAT: f64 = 4.0 * f32::EPSILON as f64;
@@ -103,13 +108,33 @@ impl TiltedShadow {
         heights: Range<f64>,
         circle: impl Fn(DVec3) -> Circle,
     ) -> Self {
-        let outline = Outline::of_shape(shape, FLATNESS);
-        let polygons = outline.polygons(FLATNESS).into_iter().map(|polygon| {
+        let at = |point: DVec2| circle(pose.place(point));
+        let origin = at(DVec2::ZERO);
+        let plane = [
+            origin,
+            at(DVec2::X).minus(&origin),
+            at(DVec2::Y).minus(&origin),
+        ];
+        let place = |polygon: Vec<DVec2>| {
             let points: Vec<DVec3> = polygon.into_iter().map(|p| pose.place(p)).collect();
             cut(&cut(&points, |p| p.z - heights.start), |p| {
                 heights.end - p.z
             })
-        });
+        };
+        let Some((min, max)) = shape.hull() else {
+            return Self {
+                loops: Vec::new(),
+                plane,
+            };
+        };
+        let corners = vec![min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)];
+        let corners = place(corners).into_iter().map(&circle).map(Circle::real);
+        let flatness = corners
+            .map(|corner| flatness(&corner, &plane))
+            .fold(f64::INFINITY, f64::min)
+            .max(FINEST * (max - min).max_element());
+        let outline = Outline::of_shape(shape, flatness);
+        let polygons = outline.polygons(flatness).into_iter().map(place);
         // What lies on its receiver hides none of it, as no level caster does, but for what rounding lifts.
         let is_raised = |points: &Vec<DVec3>| {
             let high = points
@@ -119,18 +144,12 @@ impl TiltedShadow {
             around_points(points.iter().map(|p| p.truncate()))
                 .is_some_and(|(min, max)| high > FLAT * (max - min).max_element())
         };
-        let at = |point: DVec2| circle(pose.place(point));
-        let origin = at(DVec2::ZERO);
         Self {
             loops: polygons
                 .filter(|points| points.len() > 2 && is_raised(points))
                 .map(|points| points.into_iter().map(&circle).map(Circle::real).collect())
                 .collect(),
-            plane: [
-                origin,
-                at(DVec2::X).minus(&origin),
-                at(DVec2::Y).minus(&origin),
-            ],
+            plane,
         }
     }
 
@@ -161,8 +180,8 @@ impl TiltedShadow {
         around(boxes)
     }
 
-    /// The density at a point (x, y) of the receiver, 0 to 1, in closed form; curves of the caster are taken as lines within
-    /// 0.0005 scene units. A point that is not finite has density 0.
+    /// The density at a point (x, y) of the receiver, 0 to 1, in closed form; lines in place of the caster's curves take 1/50 of
+    /// a level of it, or more where they are a millionth of the caster's extent from them: that is as fine as they are. A point that is not finite has density 0.
     #[must_use]
     pub fn density_at(&self, point: [f32; 2]) -> f64 {
         let point = DVec2::new(f64::from(point[0]), f64::from(point[1]));
@@ -220,6 +239,14 @@ impl TiltedShadow {
         tilted::fill(self, grid, options.hidden, scratch, &mut sink);
         Ok(())
     }
+}
+
+/// How far from a curve its lines may be about one of its points, in the caster's own plane: seen from where the disc meets them, a strip
+/// of that width along a diameter is as much of the disc as they may miss.
+fn flatness(at: &Circle, [_, x, y]: &[Circle; 3]) -> f64 {
+    let seen = at.center / at.scale.max(f64::MIN_POSITIVE);
+    let motion = [x, y].map(|way| (way.center - way.scale * seen).length() + way.radius.abs());
+    CURVED * FRAC_PI_2 * at.radius / DVec2::from_array(motion).length()
 }
 
 /// The part of a loop where `depth`, linear along its edges, is not negative.

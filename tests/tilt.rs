@@ -4,9 +4,10 @@
 
 use core::f32::consts::PI;
 
+use penumbral::plan::Method;
 use penumbral::{
-    FillRule, Grid, Incomplete, Light, MeshVertex, PixelOptions, Pose, Scratch, ShadowMesh, Shape,
-    TiltedShadow, Tolerance,
+    FillRule, Grid, Incomplete, Light, MeshVertex, Path, PixelOptions, Pose, Scratch, ShadowMesh,
+    Shape, Stroke, TiltedShadow, Tolerance,
 };
 
 const LIGHT: [f64; 3] = [80.0, 30.0, 300.0];
@@ -84,6 +85,69 @@ fn a_level_pose_casts_as_the_shape_does() {
         let error = tilted.density_at(point) - level.density_at(point);
         assert!(error.abs() < 1e-12, "{point:?}: {error:e}");
     }
+}
+
+/// A disc, a blob and a stroke, drawn 400 pixels wide whatever a scene unit is, by their poses and as level casters.
+#[test]
+fn curves_are_fine_enough_in_any_unit_and_however_magnified() {
+    const SIZE: [u32; 2] = [400, 120];
+    let shapes = |unit: f32, across: f32| {
+        let place = |x: f32, y: f32| [x, y].map(|v| 200.0 * unit + v * across);
+        let mut blob = Path::new();
+        blob.move_to(place(-0.5, 0.0))
+            .cubic_to(place(-0.5, -0.9), place(0.4, -0.6), place(0.5, 0.0))
+            .cubic_to(place(0.4, 0.6), place(-0.5, 0.7), place(-0.5, 0.0));
+        let mut arch = Path::new();
+        arch.move_to(place(-0.4, 0.2))
+            .quad_to(place(0.0, -0.9), place(0.4, 0.2));
+        let pen = Stroke::new(0.2 * across).unwrap();
+        [
+            Shape::circle(place(0.0, 0.0), 0.48 * across).unwrap(),
+            Shape::path(&blob, FillRule::NonZero).unwrap(),
+            Shape::stroke(&arch, &pen).unwrap(),
+        ]
+    };
+    let mut scratch = Scratch::new();
+    let mut worst: f32 = 0.0;
+    for unit in [1.0 / 400.0, 0.1, 10.0] {
+        let grid = Grid::new([0.0, 0.0], SIZE, 1.0 / unit).unwrap();
+        for magnified in [1.0, 40.0] {
+            for radius in [0.0, 0.4, 4.0, 40.0] {
+                // The light stands above the middle, a unit high: what is magnified is right below it.
+                let height = 400.0 * unit;
+                let elevation = height
+                    * if magnified == 1.0 {
+                        0.01
+                    } else {
+                        1.0 - 1.0 / magnified
+                    };
+                let growth = height / (height - elevation);
+                let spread = radius * unit * height / (elevation * growth);
+                let light = Light::new([200.0 * unit, 200.0 * unit, height], spread).unwrap();
+                let pose = Pose::turned(elevation, [0.0, 0.0], [1.0, 0.0], 0.0).unwrap();
+                for shape in shapes(unit, 400.0 * unit / growth) {
+                    let mut by = [(); 2].map(|()| vec![0.0; (SIZE[0] * SIZE[1]) as usize]);
+                    let exact = PixelOptions::default().with_method(Method::Exact);
+                    let level = light.cast(&shape, elevation, 0.0).unwrap();
+                    level
+                        .fill_f32(&grid, &mut by[0], &exact, &mut scratch)
+                        .unwrap();
+                    let posed = light.cast_posed(&shape, &pose, 0.0).unwrap();
+                    posed
+                        .fill_f32(&grid, &mut by[1], &exact, &mut scratch)
+                        .unwrap();
+                    let errors = by[0].iter().zip(&by[1]).map(|(a, b)| (a - b).abs() * 255.0);
+                    let error = errors.fold(0.0, f32::max);
+                    println!(
+                        "a unit of {} px, {magnified} times, r {radius} px: {error:.3} levels",
+                        1.0 / unit
+                    );
+                    worst = worst.max(error);
+                }
+            }
+        }
+    }
+    assert!(worst < 1.0, "{worst} levels");
 }
 
 #[test]

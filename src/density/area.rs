@@ -62,6 +62,11 @@ fn angle(a: DVec2, b: DVec2) -> f64 {
 
 /// Twice the area that a line spans with the unit disc about the origin.
 pub(super) fn of_line(from: DVec2, to: DVec2) -> f64 {
+    /// The square of a distance from which on an end has few digits left for the disc.
+    const FAR: f64 = 1e12;
+    if from.length_squared() > FAR.max(to.length_squared()) {
+        return -of_line(to, from);
+    }
     let length = (to - from).length();
     if length == 0.0 {
         return 0.0;

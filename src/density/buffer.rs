@@ -36,8 +36,8 @@ impl PixelOptions<'_> {
         mask: &'b mut [u8],
         level: Level,
     ) -> Result<A8<'b>> {
-        clear(grid, mask, 0)?;
         self.check(grid)?;
+        clear(grid, mask, 0)?;
         Ok(A8 {
             level,
             mask,
@@ -51,8 +51,8 @@ impl PixelOptions<'_> {
         grid: &Grid,
         densities: &'b mut [f32],
     ) -> Result<impl Sink + use<'b>> {
-        clear(grid, densities, 0.0)?;
         self.check(grid)?;
+        clear(grid, densities, 0.0)?;
         Ok(Each {
             pixels: densities,
             stride: grid.stride(),

@@ -43,7 +43,8 @@ pub(crate) fn fill<S: Simd>(
     };
     // Column and row numbers are the coordinates of their pixels' centres.
     let center = frame.place((min + max) / 2.0) - frame.phase - 0.5;
-    let inside = ratio.min(1.0).powi(2) as f32;
+    let filled = ratio.min(1.0);
+    let inside = (filled * filled) as f32;
     let (outer, inner) = ((ratio + 1.0) * radius, (ratio - 1.0).abs() * radius);
     for line in lines {
         let down = line as f64 - center.y;

@@ -81,7 +81,8 @@ impl RimMesh {
     /// # Errors
     /// [`Error::TooMany`](crate::Error::TooMany) when it would have more than 2^18 vertices.
     pub fn new(shape: &Shape, rim: &Rim) -> Result<Self> {
-        let outline = Outline::of_shape(shape, FLAT * rim.width());
+        let least = f64::from(f32::EPSILON) * shape.extent();
+        let outline = Outline::of_shape(shape, FLAT * rim.width().max(least));
         let center = outline
             .bounds()
             .map_or(DVec2::ZERO, |(min, max)| (min + max) / 2.0);

@@ -22,7 +22,7 @@ use super::profile::{Knot, Pieces, Profile};
 use super::samples::Samples;
 use super::search;
 use super::strips::join::RingVertex;
-use super::{MeshOptions, MeshVertex, ShadowMesh, rounding_levels};
+use super::{MeshOptions, MeshVertex, NARROWEST, ShadowMesh, rounding_levels, step};
 use crate::outline::Outline;
 use crate::shadow::Shadow;
 
@@ -114,6 +114,9 @@ impl Shadow {
         let flat = radius * FLATNESS;
         let outline = self.outline(flat);
         let (min, max) = outline.bounds()?;
+        if outline.loops.len() > 1 || radius < step(min, max) * NARROWEST {
+            return None;
+        }
         let center = min.midpoint(max).as_vec2().as_dvec2();
         let mut polygons = outline.moved(-center).polygons(flat);
         let points = polygons.pop().filter(|_| polygons.is_empty())?;

@@ -140,7 +140,7 @@ impl TiltedShadow {
         let (loops, lost) = fewer_within(&seen.loops, CURVED * FIELD_SHARE * levels / 255.0);
         let unsure = rounding + lost + NOISE;
         let field = Field::Tilted {
-            cells: TiltedCells::new(loops, [min - center, max - center], sampled),
+            cells: TiltedCells::new(&loops, [min - center, max - center], sampled),
             radius: sampled,
         };
         Refinement::new(field, options, rings).run(center, step, unsure)

@@ -90,10 +90,15 @@ impl EllipseArc {
         }
     }
 
+    /// Into how many lines it is cut.
+    pub(super) fn steps(&self, flatness: f64) -> u32 {
+        let longest = sqrt(self.u.length_squared() + self.v.length_squared());
+        arc_steps(longest, self.sweep, flatness)
+    }
+
     /// Pushes the vertices between the arc's ends.
     pub(super) fn flatten(&self, flatness: f64, out: &mut Vec<DVec2>) {
-        let longest = sqrt(self.u.length_squared() + self.v.length_squared());
-        let count = arc_steps(longest, self.sweep, flatness);
+        let count = self.steps(flatness);
         for i in 1..count {
             // From the nearer end: the same angles in both directions.
             let part = |steps: u32| self.sweep * (f64::from(steps) / f64::from(count));

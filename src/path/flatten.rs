@@ -24,7 +24,37 @@ impl Contour {
     }
 }
 
+/// No fewer lines than flattening makes of contours (Wang 1984: of a curve's second differences).
+pub(crate) fn lines(contours: &[Contour], flatness: f64) -> usize {
+    let of_contour = |contour: &Contour| {
+        let mut from = contour.start;
+        let of_segment = |segment: &Segment| {
+            let lines = segment.lines(from, flatness);
+            from = segment.end();
+            lines
+        };
+        contour.segments.iter().map(of_segment).sum::<f64>()
+    };
+    contours.iter().map(of_contour).sum::<f64>() as usize
+}
+
 impl Segment {
+    fn lines(&self, from: DVec2, flatness: f64) -> f64 {
+        let of_curve = |degree: f64, bend: DVec2| {
+            let most = degree * (degree - 1.0) / 8.0 * bend.length() / flatness;
+            most.sqrt().ceil().max(1.0)
+        };
+        match *self {
+            Self::Line(_) => 1.0,
+            Self::Quad(a, to) => of_curve(2.0, from - 2.0 * a + to),
+            Self::Cubic(a, b, to) => {
+                let bends = [from - 2.0 * a + b, a - 2.0 * b + to];
+                of_curve(3.0, bends[0].abs().max(bends[1].abs()))
+            }
+            Self::Arc(arc) => f64::from(arc.steps(flatness)),
+        }
+    }
+
     pub(crate) fn flatten(&self, from: DVec2, flatness: f64, out: &mut Vec<DVec2>) {
         let first = out.len();
         let to = self.end();
@@ -103,6 +133,29 @@ fn lyon_point(p: DVec2) -> Point<f64> {
 mod tests {
     use super::*;
     use crate::path::Path;
+
+    #[test]
+    fn there_are_no_more_lines_than_are_told() {
+        let curves = [
+            "L1 7",
+            "Q9 9 4 8",
+            "C30 9 -7 -4 10.3 2.7",
+            "C5 9 5 -9 .1 .2",
+            "A5.1 3.3 30 1 0 4.3 1.7",
+        ];
+        for curve in curves {
+            let path = Path::from_svg(&format!("M.1 .2 {curve}")).unwrap();
+            for flatness in [1e-9, 1e-5, 1e-2, 0.3, 10.0] {
+                let told = lines(&path.contours, flatness);
+                // A contour has a vertex more than lines.
+                let got = path.contours[0].flatten(flatness).len() - 1;
+                assert!(
+                    got <= told && told <= 3 * got + 1,
+                    "{curve}, {flatness}: {got} of {told}"
+                );
+            }
+        }
+    }
 
     #[test]
     fn curves_are_flattened_alike_from_both_ends() {

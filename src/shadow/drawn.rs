@@ -61,11 +61,7 @@ impl Shadow {
         }
         let mut outline = self.fixed.clone();
         for group in &self.curved {
-            let extent = group
-                .iter()
-                .filter_map(Shape::hull)
-                .map(|(min, max)| (max - min).max_element())
-                .fold(0.0, f64::max);
+            let extent = group.iter().map(Shape::extent).fold(0.0, f64::max);
             // For a nearly hard shadow the rule would ask for chords without end.
             let flatness = flatness.max(extent * FINEST);
             let outlines: Vec<Outline> = group

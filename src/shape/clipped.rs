@@ -4,16 +4,21 @@ use glam::DVec2;
 
 use super::Shape;
 use crate::density::rounded::Rounded;
-use crate::error::Result;
+use crate::error::{MAX_SEGMENTS, Result};
+use crate::limits::at_most;
 use crate::outline::{Outline, intersect_loops};
-use crate::path::{FillRule, Path, Segment};
+use crate::path::{FillRule, Path, Segment, lines};
 
-/// How far from a curve of a cut shape its lines may be, in scene units.
+/// How far from a curve of a cut shape its lines may be, in scene units, and over the larger side of the smaller shape's box.
 const FLATNESS: f64 = 2e-4;
+const RELATIVE_FLATNESS: f64 = 1e-6;
+
+/// The finest, over the larger side of the larger one's.
+const FINEST: f64 = 1e-10;
 
 impl Shape {
     /// The part of the shape inside another one, or none. Where something is cut away, curves become lines within 0.0002
-    /// scene units.
+    /// scene units and a millionth of the smaller one's extent, but no finer than 10^-10 of the larger one's.
     ///
     /// # Errors
     /// More than [`MAX_SEGMENTS`](crate::MAX_SEGMENTS) lines.
@@ -42,7 +47,19 @@ impl Shape {
                 return Ok(Some(Self::of_box(low, high - low, [0.0; 4])));
             }
         }
-        let of = |shape: &Self| Outline::of_flattened(shape, FLATNESS).polygons(FLATNESS);
+        let extent = |min: DVec2, max: DVec2| (max - min).max_element();
+        let extents = [extent(min, max), extent(clip_min, clip_max)];
+        let [smaller, larger] = [extents[0].min(extents[1]), extents[0].max(extents[1])];
+        let flatness = FLATNESS
+            .min(RELATIVE_FLATNESS * smaller)
+            .max(FINEST * larger);
+        let count = |shape: &Self| lines(&shape.contours, flatness);
+        at_most(
+            "lines of a clip",
+            count(self).saturating_add(count(by)),
+            MAX_SEGMENTS,
+        )?;
+        let of = |shape: &Self| Outline::of_flattened(shape, flatness).polygons(flatness);
         Self::of_loops(&intersect_loops(&of(self), &of(by)))
     }
 
@@ -75,6 +92,7 @@ impl Shape {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::error::Error;
 
     fn area(shape: &Shape) -> f64 {
         Outline::of_flattened(shape, 1e-4).area()
@@ -96,6 +114,31 @@ mod tests {
         let cut = list.clipped(&rounded).unwrap().unwrap();
         let corners = (4.0 - core::f64::consts::PI) * 100.0;
         assert!((area(&cut) - (5000.0 - corners)).abs() < 0.02);
+    }
+
+    #[test]
+    fn shapes_are_as_round_in_any_unit() {
+        for unit in [1e-3, 1.0, 1e4, 1e6] {
+            let list = Shape::rect(0.0, 0.0, 4.0 * unit, 2.0 * unit).unwrap();
+            let circle = Shape::circle([2.0 * unit, 2.0 * unit], unit).unwrap();
+            let half = circle.clipped(&list).unwrap().unwrap();
+            let area = area(&half) / f64::from(unit).powi(2);
+            let error = area - core::f64::consts::FRAC_PI_2;
+            assert!(error.abs() < 1e-5, "a unit of {unit}: {error}");
+        }
+    }
+
+    #[test]
+    fn what_would_be_too_many_lines_is_refused() {
+        let mut path = Path::new();
+        path.move_to([0.0, 0.0]);
+        for _ in 0..100 {
+            path.cubic_to([1.6e7, 0.0], [0.0, 1.6e7], [1.6e7, 1.6e7]);
+            path.cubic_to([0.0, 1.6e7], [1.6e7, 0.0], [0.0, 0.0]);
+        }
+        let shape = Shape::path(&path, FillRule::NonZero).unwrap();
+        let clip = Shape::rect(0.0, 0.0, 100.0, 100.0).unwrap();
+        assert!(matches!(shape.clipped(&clip), Err(Error::TooMany { .. })));
     }
 
     #[test]

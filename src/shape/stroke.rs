@@ -1,5 +1,7 @@
 //! Strokes: a pen's way along a path as a shape.
 
+use core::f64::consts::PI;
+
 use glam::DVec2;
 use lyon::math::{Point, point};
 use lyon::path::traits::PathBuilder;
@@ -10,13 +12,19 @@ use lyon::tessellation::{
 
 use super::Shape;
 use crate::error::{self, Error, Result};
+use crate::limits::at_most;
 use crate::outline::{Winding, resolve_loops};
-use crate::path::{FillRule, Path, Segment};
+use crate::path::{FillRule, Path, Segment, arc_steps, lines};
 
-/// How far from a curve of a stroke its lines may be, in scene units, and over the larger side of the path's box, without the stroke's
-/// width, where that is more: strokes are computed in `f32`.
+/// How far from a curve of a stroke its lines may be, in scene units.
 const FLATNESS: f64 = 5e-4;
-const RELATIVE_FLATNESS: f64 = 1e-6;
+
+/// The least and the most that is over the stroke's extent: strokes are computed in `f32`, and a scene unit may be anything.
+const RELATIVE_FLATNESS: [f64; 2] = [1e-6, 4e-6];
+
+/// A stroke may not have more lines than this before it is united: where a wide one overlaps itself they cross in as many places as the
+/// square of their number.
+const MAX_LINES: usize = 1 << 18;
 
 /// How a stroke ends where its path is open.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -92,12 +100,13 @@ impl Stroke {
 }
 
 impl Shape {
-    /// What a pen draws along a path, open contours as well as closed ones. Curves become lines within 0.0005 scene units, or
-    /// a millionth of the larger side of the path's box where that is more.
+    /// What a pen draws along a path, open contours as well as closed ones. Curves become lines within 0.0005 scene units, but no
+    /// finer than a millionth of the larger side of the path's box and the width together, and no coarser than four of them.
     ///
     /// # Errors
     /// A path without segments or that draws nothing, a number that is not finite or passes
-    /// [`MAX_COORDINATE`](crate::MAX_COORDINATE), more than [`MAX_SEGMENTS`](crate::MAX_SEGMENTS) segments or lines.
+    /// [`MAX_COORDINATE`](crate::MAX_COORDINATE), more than [`MAX_SEGMENTS`](crate::MAX_SEGMENTS) segments, or more than 2^18
+    /// lines along the path and round its ends and corners.
     ///
     /// ```
     /// use penumbral::{LineCap, Path, Shape, Stroke};
@@ -110,13 +119,27 @@ impl Shape {
     pub fn stroke(path: &Path, stroke: &Stroke) -> Result<Self> {
         path.validate()?;
         let origin = path.contours[0].start;
-        let hull = Self {
+        let extent = Self {
             contours: path.contours.clone(),
             cover: super::Cover::Rule(FillRule::NonZero),
         }
-        .hull();
-        let extent = hull.map_or(0.0, |(min, max)| (max - min).max_element());
-        let flatness = FLATNESS.max(RELATIVE_FLATNESS * extent);
+        .extent();
+        let width = f64::from(stroke.width);
+        let [least, most] = RELATIVE_FLATNESS.map(|share| share * (extent + width));
+        let flatness = FLATNESS.clamp(least, most);
+        let is_round = stroke.cap == LineCap::Round || stroke.join == LineJoin::Round;
+        let at_end = if is_round {
+            arc_steps(width / 2.0, PI, flatness) as usize
+        } else {
+            1
+        };
+        let ends: usize = path.contours.iter().map(|c| c.segments.len() + 1).sum();
+        let along = lines(&path.contours, flatness);
+        at_most(
+            "lines of a stroke",
+            along.saturating_add(ends.saturating_mul(at_end)),
+            MAX_LINES,
+        )?;
         let options = StrokeOptions::tolerance(flatness as f32)
             .with_line_width(stroke.width)
             .with_line_cap(stroke.cap.into())
@@ -248,6 +271,35 @@ mod tests {
         let (inside, semi) = (600.0, 60.0);
         let inset = |d: f64| inside * (1.0 - d * semi / inside).powi(2);
         assert!((grown - (inset(-2.0) - inset(2.0))).abs() < 1e-1, "{grown}");
+    }
+
+    #[test]
+    fn strokes_are_as_round_in_any_unit() {
+        let pen = |unit: f32| Stroke::new(4.0 * unit).unwrap().with_cap(LineCap::Round);
+        for unit in [1e-3, 1.0, 1e4] {
+            let mut line = Path::new();
+            line.move_to([0.0, 0.0]).line_to([3.0 * unit, 4.0 * unit]);
+            let flatness = 1e-6 * f64::from(unit);
+            let shape = Shape::stroke(&line, &pen(unit)).unwrap();
+            let area = Outline::of_flattened(&shape, flatness).area() / f64::from(unit).powi(2);
+            let error = area - (20.0 + 4.0 * PI);
+            assert!(error.abs() < 1e-3, "a unit of {unit}: {error}");
+        }
+    }
+
+    #[test]
+    fn strokes_of_too_many_lines_are_refused() {
+        let mut zigzag = Path::new();
+        zigzag.move_to([0.0, 0.0]);
+        for i in 1..1000_u16 {
+            zigzag.line_to([10.0 * f32::from(i), f32::from(i % 2 * 17)]);
+        }
+        let pen = Stroke::new(2e4).unwrap();
+        assert!(Shape::stroke(&zigzag, &pen.with_join(LineJoin::Bevel)).is_ok());
+        assert!(matches!(
+            Shape::stroke(&zigzag, &pen.with_join(LineJoin::Round)),
+            Err(Error::TooMany { .. })
+        ));
     }
 
     #[test]

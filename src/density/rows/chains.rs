@@ -69,8 +69,8 @@ impl Piece {
         // that a window sees its own width.
         let seen = (PI * wide.radius * wide.radius).max(4.0 * wide.half * wide.half);
         let near = (far - 2.0 * reach).max(0.0);
-        let shown = |bend: f64, power: i32| {
-            let area = bend.abs() * (far.powi(power) - near.powi(power)) / f64::from(power);
+        let shown = |bend: f64, power: f64, of: fn(f64) -> f64| {
+            let area = bend.abs() * (of(far) - of(near)) / power;
             area / seen * 255.0 <= SHOWN
         };
         let spokes = [
@@ -78,8 +78,8 @@ impl Piece {
             (next.from - c) * (t / r),
         ];
         spokes[0].dot(spokes[1]) > 0.0
-            && shown(spokes[0].perp_dot(spokes[1]), 2)
-            && shown((turn / radius - t / r) / 2.0, 3)
+            && shown(spokes[0].perp_dot(spokes[1]), 2.0, |x| x * x)
+            && shown((turn / radius - t / r) / 2.0, 3.0, |x| x * x * x)
     }
 
     /// Whether it is as good as straight to what a pixel averages over.

@@ -3,6 +3,7 @@
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_2, PI, SQRT_2};
 
 use glam::DVec2;
+use libm::sin;
 
 use super::Lattice;
 use crate::outline::Edge;
@@ -42,7 +43,7 @@ impl Tip {
     /// How far density may be off between samples `pitch` apart, from what they tell of it.
     pub(super) fn height(&self, pitch: f64, radius: f64) -> f64 {
         // Over the distance from the centre density changes by as much as the part of the disc's edge that is seen from the side.
-        let slope = FRAC_2_PI / radius * (self.turn / 2.0).min(FRAC_PI_2).sin();
+        let slope = FRAC_2_PI / radius * sin((self.turn / 2.0).min(FRAC_PI_2));
         // The chord over a roof is off by a quarter of its length, that of a cone by a half; diagonals are longer.
         let share = if self.turn > PI { 0.5 } else { 0.25 };
         // A ridge is as blunt as the radii differ.

@@ -4,13 +4,15 @@
 //! smaller: each is quartered until it is less than the penumbra radii in it. Lines of homogeneous circles are cut where all discs
 //! of a cell end, which are planes too.
 
+use core::f64::consts::PI;
+
 use fearless_simd::{Level, Simd, dispatch};
 use glam::DVec2;
 use libm::{ceil, log2};
 
+use crate::density::half_area;
 use crate::density::lanes::LANES;
 use crate::density::rows::half_disc;
-use crate::density::tilted;
 use crate::mesh::cells::{SIDE, line_area};
 use crate::tilted::Circle;
 
@@ -30,7 +32,6 @@ const NONE: usize = usize::MAX;
 
 pub(in crate::mesh) struct TiltedCells {
     level: Level,
-    loops: Vec<Vec<Circle>>,
     /// The corner of the largest cell, which holds the shadow, and its side.
     min: DVec2,
     side: f64,
@@ -92,11 +93,7 @@ struct End {
 
 impl TiltedCells {
     /// Of closed loops in the box from `min` to `max`, of which samples are asked for as near to one another as suits `radius`.
-    pub(in crate::mesh) fn new(
-        loops: Vec<Vec<Circle>>,
-        [min, max]: [DVec2; 2],
-        radius: f64,
-    ) -> Self {
+    pub(in crate::mesh) fn new(loops: &[Vec<Circle>], [min, max]: [DVec2; 2], radius: f64) -> Self {
         let lines = |circles: &Vec<Circle>| {
             let next = circles.iter().cycle().skip(1);
             let line = |(&from, &to)| Line {
@@ -112,7 +109,6 @@ impl TiltedCells {
         Self {
             level: Level::new(),
             cells: vec![Cell::new(min + side / 2.0, side / 2.0, lines, depth)],
-            loops,
             min,
             side,
             depth,
@@ -148,7 +144,7 @@ impl TiltedCells {
             let cell = &self.cells[asked[0].0];
             let Kind::Smallest(lines) = &cell.kind else {
                 for &(_, number) in asked {
-                    densities[number] = tilted::at_point(&self.loops, points[number]);
+                    densities[number] = cell.density(points[number]);
                 }
                 continue;
             };
@@ -220,6 +216,21 @@ impl Cell {
             lines,
             kind,
         }
+    }
+
+    /// The density at one of its points where it is not small enough.
+    fn density(&self, point: DVec2) -> f64 {
+        let area = |line: &Line| {
+            let [from, to] = line.ends.each_ref().map(|end| end.seen_from(point));
+            if from.y.min(to.y) >= 1.0 || from.y.max(to.y) <= -1.0 {
+                return 0.0;
+            }
+            match line.place {
+                Place::Near => area_left_of(from, to),
+                Place::Beside(sign) => f64::from(sign) * (half_area(to.y) - half_area(from.y)),
+            }
+        };
+        (self.lines.iter().map(area).sum::<f64>().abs() / PI).min(1.0)
     }
 
     fn holds(&self, point: DVec2) -> bool {
@@ -294,6 +305,33 @@ fn push(line: Line, kept: &mut Vec<Line>) {
     } else {
         kept.push(line);
     }
+}
+
+/// By Green's theorem: the integral over y of a line's x, clamped to the unit disc.
+fn area_left_of(from: DVec2, to: DVec2) -> f64 {
+    // The far one of two ends may be so far away that it has no digits left for the disc.
+    if to.length_squared() < from.length_squared() {
+        return -area_left_of(to, from);
+    }
+    let way = to - from;
+    let length = way.length();
+    if length == 0.0 {
+        return 0.0;
+    }
+    // As `line_area`.
+    let along = way / length;
+    let distance = from.perp_dot(along);
+    let start = from.dot(along);
+    let half_chord = (1.0 - distance * distance).max(0.0).sqrt();
+    let enter = (-half_chord).max(start).min(start + length);
+    let leave = half_chord.max(start).min(start + length);
+    let foot = from - start * along;
+    let inside = (foot.x + 0.5 * along.x * (enter + leave)) * along.y * (leave - enter);
+    let before = half_area(foot.y + along.y * enter) - half_area(from.y);
+    let after = half_area(to.y) - half_area(foot.y + along.y * leave);
+    let side = |x: f64| 1.0_f64.copysign(x);
+    let chord = along.x * half_chord;
+    inside + before * side(foot.x - chord) + after * side(foot.x + chord)
 }
 
 impl Line {
@@ -390,8 +428,10 @@ impl End {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::density::tilted;
     use crate::light::Light;
     use crate::mesh::cells::NOISE;
+    use crate::outline::sides;
     use crate::path::{FillRule, Path};
     use crate::pose::Pose;
     use crate::shape::Shape;
@@ -413,7 +453,7 @@ mod tests {
             .flatten()
             .map(|circle| circle.radius / circle.scale);
         let most = radii.fold(0.0, f64::max);
-        let mut cells = TiltedCells::new(loops.clone(), [min - center, max - center], most / 8.0);
+        let mut cells = TiltedCells::new(&loops, [min - center, max - center], most / 8.0);
         let at =
             |i: u32| DVec2::new(f64::from(i % SIDE), f64::from(i / SIDE)) / f64::from(SIDE - 1);
         let points: Vec<DVec2> = (0..SIDE * SIDE)
@@ -431,6 +471,37 @@ mod tests {
             worst,
             [touched, count(|kind| matches!(kind, Kind::Smallest(_)))],
         )
+    }
+
+    #[test]
+    fn areas_left_of_lines_add_up_to_those_inside() {
+        let mut state = 1_u64;
+        let mut next = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (state >> 33) as f64 / f64::from(1_u32 << 30) - 1.0
+        };
+        for size in [0.5, 1.5, 4.0, 1e3, 1e9] {
+            for _ in 0..1000 {
+                let corners = [(); 3].map(|()| DVec2::new(next(), next()) * size);
+                let circle = |&center: &DVec2| Circle {
+                    center,
+                    scale: 1.0,
+                    radius: 1.0,
+                };
+                let expected =
+                    tilted::at_point(&[corners.iter().map(circle).collect()], DVec2::ZERO);
+                let sum: f64 = sides(&corners)
+                    .map(|(from, to)| area_left_of(from, to))
+                    .sum();
+                let error = sum.abs() / PI - expected;
+                assert!(
+                    error.abs() < 1e-12 * size.max(1.0),
+                    "{corners:?}: {error:e}"
+                );
+            }
+        }
     }
 
     #[test]

@@ -83,8 +83,8 @@ impl<'i> Members<'i> {
         let surface = fields
             .build(self.images)
             .map_err(|reason| part.refuse(field, &reason))?;
-        self.vertices += surface.shape().vertices();
-        at_most("vertices", self.vertices, self.limits.vertices)
+        let whole = surface.shape().vertices();
+        self.take(whole)
             .map_err(|error| part.refuse(field, &error))?;
         let left = match around {
             Some(nest) => nest.place(surface),
@@ -92,6 +92,8 @@ impl<'i> Members<'i> {
         };
         let pushed = left.and_then(|left| {
             if let Some(left) = left {
+                // Where a curve was cut it is lines.
+                self.take(left.shape().vertices().saturating_sub(whole))?;
                 self.scene.push(left)?;
                 self.scene.surface_fields.push(field.to_owned());
             }
@@ -105,6 +107,12 @@ impl<'i> Members<'i> {
             }
             _ => part.refuse(field, &error),
         })
+    }
+
+    /// Counts vertices, if so many more may be.
+    fn take(&mut self, vertices: usize) -> Result<()> {
+        self.vertices += vertices;
+        at_most("vertices", self.vertices, self.limits.vertices)
     }
 
     fn read_group(&mut self, part: Part<'_>, field: &str, around: Option<&Nest<'_>>) -> Result<()> {
