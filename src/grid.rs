@@ -120,9 +120,23 @@ impl Grid {
         pixels(self) == pixels(other)
     }
 
+    /// The first pixel's corner on an axis, where that is a whole number of pixels but for the rounding of an origin in `f32`.
+    pub(crate) fn whole_corner(&self, axis: usize) -> Option<f64> {
+        /// How far from it one may be besides, in pixels: next to nothing.
+        const WHOLE: f64 = 1.0 / 1024.0;
+        let corner = self.corner[axis];
+        let nearest = corner.round();
+        let slack = nearest.abs() * f64::from(f32::EPSILON) + WHOLE;
+        ((corner - nearest).abs() <= slack).then_some(nearest)
+    }
+
     /// The column and row of the first pixel among those of the plane, as far as a pattern of 8 needs them.
     pub(crate) fn pattern(&self) -> [u32; 2] {
-        [self.corner.x, self.corner.y].map(|v| (v.floor() as i64).rem_euclid(8) as u32)
+        [0, 1].map(|axis| {
+            let first = self.whole_corner(axis);
+            let first = first.unwrap_or_else(|| self.corner[axis].floor());
+            (first as i64).rem_euclid(8) as u32
+        })
     }
 
     /// The part of the grid from column and row `first` to before `end`, in a buffer of its own.

@@ -85,11 +85,26 @@ impl Shadow {
 
     /// The mesh, with the corners that a scratch keeps.
     fn mesh_with(&self, options: &MeshOptions, scratch: &mut Scratch) -> ShadowMesh {
+        if self.is_apart() {
+            return self.in_parts(options, scratch);
+        }
         let mut buffers = MeshBuffers::new();
         match self.patterned(options, scratch, &mut buffers) {
             Ok(Some(quality)) => ShadowMesh::filled(buffers, quality),
             _ => self.triangulated(options),
         }
+    }
+
+    /// The meshes of parts that do not meet, one after another: each is what suits it, however many there are.
+    fn in_parts(&self, options: &MeshOptions, scratch: &mut Scratch) -> ShadowMesh {
+        let mut all = ShadowMesh::empty();
+        let mut options = *options;
+        for part in self.parts(1.0) {
+            let mesh = part.mesh_with(&options, scratch);
+            options.max_vertices = options.max_vertices.saturating_sub(mesh.vertices.len());
+            all.append(mesh);
+        }
+        all
     }
 
     /// Gives the triangles of [`Shadow::mesh`] to a sink.
@@ -108,12 +123,17 @@ impl Shadow {
         scratch: &mut Scratch,
     ) -> Result<MeshQuality> {
         let options = options.into();
-        if let Some(quality) = self.patterned(&options, scratch, sink)? {
+        let is_apart = self.is_apart();
+        if !is_apart && let Some(quality) = self.patterned(&options, scratch, sink)? {
             return Ok(quality);
         }
-        let mesh = scratch
-            .meshes
-            .same(self, &options, || self.triangulated(&options));
+        let mesh = scratch.meshes.same(self, &options, || {
+            if is_apart {
+                self.in_parts(&options, &mut Scratch::new())
+            } else {
+                self.triangulated(&options)
+            }
+        });
         sink.begin(mesh.vertices.len(), mesh.indices.len() / 3)?;
         for &vertex in &mesh.vertices {
             sink.vertex(vertex);
@@ -201,7 +221,7 @@ impl Shadow {
 
     /// The mesh by triangulation and refinement.
     fn refined(&self, options: &MeshOptions) -> ShadowMesh {
-        let options = *options;
+        let mut options = *options;
         let levels = options.tolerance.as_levels();
         let radius = self.radius();
         let facet = self.extent() * FACET;
@@ -228,7 +248,17 @@ impl Shadow {
             return umbra::mesh(&outline.polygons(facet), center).short_of(Incomplete::Narrow);
         }
 
-        let pieces = Pieces::within(levels / 255.0 * SLACK);
+        // What rounding leaves nothing of is refined as far as it leaves some.
+        let far = min.abs().max(max.abs()).max_element();
+        let rounding = rounding_levels(far, radius);
+        let is_coarser = rounding > levels * REFINED_ROUNDING;
+        if is_coarser {
+            options.tolerance = options
+                .tolerance
+                .divided(levels * REFINED_ROUNDING / rounding);
+        }
+        let levels = options.tolerance.as_levels();
+        let pieces = pieces(levels, rounding);
         let mut flat = ring_flatness(radius, levels);
         loop {
             let circles = projection_circles(&outline, radius, flat);
@@ -245,6 +275,9 @@ impl Shadow {
             let mut mesh = Refinement::new(field, options, rings).run(center, step, unsure);
             if flat > ring_flatness(radius, levels) {
                 mesh.incomplete = mesh.incomplete.and(Some(Incomplete::Vertices));
+            }
+            if is_coarser {
+                mesh.incomplete = mesh.incomplete.or(Some(Incomplete::Narrow));
             }
             return mesh;
         }
@@ -339,6 +372,16 @@ const SLACK: f64 = 0.85;
 /// what is too coarse: half of it took a tenth more triangles, twice as much no fewer.
 const RING_FLATNESS: f64 = 0.01;
 
+/// The straight pieces of the profile of rings whose vertices are rounded by so many levels.
+fn pieces(levels: f64, rounding: f64) -> &'static Pieces {
+    let taken = if rounding > levels * SPARE {
+        TAKEN * rounding
+    } else {
+        0.0
+    };
+    Pieces::within((levels - taken) / 255.0 * SLACK)
+}
+
 fn ring_flatness(radius: f64, levels: f64) -> f64 {
     radius * (RING_FLATNESS * levels).min(COARSEST_RING)
 }
@@ -358,6 +401,15 @@ const NARROWEST: f64 = 64.0;
 /// triangulation would take a hundred times as long.
 const ROUNDING_SHARE: f64 = 1.0 / 256.0;
 const MOST_ROUNDING: f64 = 0.25;
+
+/// The most of the tolerance that the rounding of vertices may be where triangles are refined.
+const REFINED_ROUNDING: f64 = 0.5;
+
+/// What it may take that straight pieces of the profile need not make up for.
+const SPARE: f64 = 1.0 / 32.0;
+
+/// What they make up for, over it: with all else that is taken of the tolerance as much as before is left beside them.
+const TAKEN: f64 = 1.2;
 
 /// How wrong densities may be for coordinates up to `far` that are rounded to `f32`, in levels: density changes by at most 2 / π over the
 /// penumbra radius.

@@ -27,9 +27,6 @@ pub struct NinePatch {
     stretches: [bool; 2],
 }
 
-/// How far from a whole pixel a grid may begin besides what `f32` rounds, in pixels: next to nothing.
-const WHOLE: f64 = 1.0 / 1024.0;
-
 impl NinePatch {
     /// Draws the mask of a key.
     ///
@@ -103,15 +100,10 @@ impl NinePatch {
                 });
             }
         }
-        let corner = grid.corner().round();
-        let off = (grid.corner() - corner).abs();
-        if off
-            .cmpgt(corner.abs() * f64::from(f32::EPSILON) + WHOLE)
-            .any()
-        {
+        let (Some(x), Some(y)) = (grid.whole_corner(0), grid.whole_corner(1)) else {
             return Err(Error::OtherGrid { field: "place" });
-        }
-        let first = [corner.x as i64, corner.y as i64];
+        };
+        let first = [x as i64, y as i64];
         let [left, top, right, bottom] = self.insets.map(i64::from);
         let height = i64::from(grid.height());
         let on_grid = |place: [i64; 2], axis: usize| place[axis].saturating_sub(first[axis]);

@@ -558,6 +558,63 @@ fn windows_show_the_same_bits(cases: impl Iterator<Item = (usize, Case)>) {
     }
 }
 
+/// Where interpolation leaves a trace beyond what the shadow reaches, every row has it or none.
+#[test]
+fn rows_at_the_end_of_a_shadow_are_the_same_alone() {
+    let (mut scratch, mut random) = (Scratch::new(), Random::new(78));
+    for _ in 0..200 {
+        let at = [0, 1].map(|_| random.between(10.0, 30.0));
+        let radius = random.between(3.0, 120.0);
+        let corner = random.pick(&[0.0, 12.0, 30.0]);
+        let card = Shape::rounded_rect(at[0], at[1], 60.0, 60.0, corner).unwrap();
+        let light = Light::directional([0.0, 0.0], radius).unwrap();
+        let shadow = light.cast(&card, 1.0, 0.0).unwrap();
+        let last = (at[1] + 60.0 + radius).floor() - 3.0;
+        let top = last + random.pick(&[0.0, 0.25, 0.9375]);
+        for levels in [0.5, 1.0, 8.0, 64.0] {
+            let options = PixelOptions::new(Tolerance::levels(levels).unwrap());
+            let grid = Grid::new([0.0, top], [100, 8], 1.0).unwrap();
+            let all = bits(&densities(&shadow, &grid, &options, &mut scratch));
+            for row in 0..8_u8 {
+                let alone = Grid::new([0.0, top + f32::from(row)], [100, 1], 1.0).unwrap();
+                let alone = bits(&densities(&shadow, &alone, &options, &mut scratch));
+                let start = 100 * usize::from(row);
+                assert!(
+                    alone == all[start..start + 100],
+                    "{at:?}, r {radius}, top {top}, {levels} levels, row {row}"
+                );
+            }
+        }
+    }
+}
+
+/// At many scales a row's place in `f32` is short of the whole pixel that it is.
+#[test]
+fn rows_are_dithered_alike_alone() {
+    let (shadow, mut scratch) = (slope(0.0).0, Scratch::new());
+    let options = PixelOptions::default().with_dither(true);
+    for scale in [1.1, 1.5, 1.75, 2.625, 3.5] {
+        let size = [150, 200];
+        let mut all = vec![0; 150 * 200];
+        let grid = Grid::new([0.0, 0.0], size, scale).unwrap();
+        shadow
+            .fill_a8(&grid, &mut all, &options, &mut scratch)
+            .unwrap();
+        for row in 0..200_u16 {
+            let grid = Grid::new([0.0, f32::from(row) / scale], [150, 1], scale).unwrap();
+            let mut alone = vec![0; 150];
+            shadow
+                .fill_a8(&grid, &mut alone, &options, &mut scratch)
+                .unwrap();
+            let start = 150 * usize::from(row);
+            let pairs = alone.iter().zip(&all[start..start + 150]);
+            let differ = pairs.filter(|(a, b)| a != b).count();
+            // The same but where a density is at a threshold, which the place's rounding decides.
+            assert!(differ < 8, "{scale}, row {row}: {differ} pixels differ");
+        }
+    }
+}
+
 /// The pixels that are hidden, told by drawing a shadow that is everywhere.
 fn hidden_pixels(hidden: &Hidden, scratch: &mut Scratch) -> Vec<bool> {
     let everywhere = Shape::rect(-1e4, -1e4, 2e4, 2e4).unwrap();

@@ -40,10 +40,11 @@ impl Frame {
         }
     }
 
-    /// The columns and rows that the shadow may reach and the grid shows.
+    /// The columns and rows that the shadow may reach and the grid shows. None is so far beyond that a grid that begins with it would
+    /// not [meet](Grid::meets) the shadow: a picture is the same in parts.
     pub(crate) fn pixels(&self) -> [Range<i64>; 2] {
         [0, 1].map(|axis| {
-            let end = self.extent[axis].ceil() as i64 + 1;
+            let end = self.extent[axis].ceil() as i64;
             self.first[axis].max(0)..end.min(self.first[axis] + self.size[axis])
         })
     }

@@ -31,6 +31,9 @@ const BESIDE: f64 = 1e-3;
 /// ring are wrong nearer to their vertices than they should be.
 const NEAREST: f64 = 5e-5;
 
+/// The least distance of a triangle's corners from its middle, over the radius, for what is worst at them to be worth a vertex there.
+const LARGE: f64 = 0.25;
+
 /// The part of the tolerance that an error found by sampling may reach: the tops between samples are sought, but could be
 /// missed.
 const SAMPLED: f64 = 0.97;
@@ -97,11 +100,17 @@ impl Refinement {
             }
             wrong.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
             let before = self.triangles.num_vertices();
-            for (_, key) in wrong {
+            for &(_, key) in &wrong {
                 if self.triangles.num_vertices() >= self.options.max_vertices {
                     break;
                 }
                 self.mend(key, limit);
+            }
+            // Where all that is wrong is worst at its corners: a tilted caster's shadow begins in a point with all densities.
+            if self.triangles.num_vertices() == before && before < self.options.max_vertices {
+                for &(_, key) in &wrong {
+                    self.split(key);
+                }
             }
             if self.triangles.num_vertices() == before {
                 stopped = if before >= self.options.max_vertices {
@@ -236,6 +245,26 @@ impl Refinement {
         }
     }
 
+    /// Adds a vertex in the middle of a triangle, if it is still one and large enough.
+    fn split(&mut self, key: [usize; 3]) {
+        let corners = key.map(FixedVertexHandle::from_index);
+        let edge = self
+            .triangles
+            .get_edge_from_neighbors(corners[0], corners[1]);
+        if edge.is_none_or(|edge| edge.next().to().fix() != corners[2]) {
+            return;
+        }
+        let at = corners.map(|corner| {
+            let position = self.triangles.vertex(corner).position();
+            DVec2::new(position.x, position.y)
+        });
+        let middle = at.iter().sum::<DVec2>() / 3.0;
+        let least = LARGE * self.measure.radius();
+        if at.iter().all(|corner| (*corner - middle).length() >= least) {
+            self.insert(middle, None);
+        }
+    }
+
     /// The constraint that passes a point within `distance`, if one does.
     fn constraint_near(
         &self,
@@ -339,7 +368,11 @@ impl Refinement {
             }
         }
         error = error / SAMPLED + noise;
-        mesh.error_levels = if self.broken { 255.0 } else { error * 255.0 };
+        mesh.error_levels = if self.broken {
+            255.0
+        } else {
+            255.0 * error.min(1.0)
+        };
         let kept = mesh.error_levels <= self.options.tolerance.as_levels();
         complete &= kept || self.options.profile != Profile::Disc;
         mesh.incomplete = (!complete).then_some(stopped);

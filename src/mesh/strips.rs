@@ -55,12 +55,16 @@ impl Strips {
         let half = (rounded.max - rounded.min) / 2.0;
         // Moved about, a shape keeps its size to some last digits: without them it keeps its template.
         let coarsely = |length: f64| (length / radius * FINENESS).round() / FINENESS;
+        let sides = DVec2::new(coarsely(half.x), coarsely(half.y));
+        if sides.min_element() == 0.0 {
+            return None;
+        }
         let radii = [2, 3, 0, 1].map(|corner: usize| coarsely(rounded.radii[corner]));
         Some(Self {
             center: rounded.min.midpoint(rounded.max),
             half,
             radius,
-            corners: corners(DVec2::new(coarsely(half.x), coarsely(half.y)), radii)?,
+            corners: corners(sides, radii)?,
         })
     }
 

@@ -13,12 +13,12 @@ use fewer::{fewer, fewer_within};
 
 use super::cells::NOISE;
 use super::field::Field;
-use super::profile::{Knot, Pieces};
+use super::profile::Knot;
 use super::refine::Refinement;
 use super::tangents::{ProjectionCircle, tangent_loops, tangent_normal};
 use super::{
-    CURVED, FIELD_SHARE, Incomplete, MeshOptions, NARROWEST, SLACK, ShadowMesh, ring_flatness,
-    umbra,
+    CURVED, FIELD_SHARE, Incomplete, MeshOptions, NARROWEST, ShadowMesh, pieces, ring_flatness,
+    rounding_levels, umbra,
 };
 use crate::error::MAX_COORDINATE;
 use crate::outline::{Winding, resolve_loops, sides};
@@ -98,7 +98,7 @@ impl TiltedShadow {
         }
         let radius = least.max(most * SMALLEST);
         let facing = seen.facing([min - center, max - center]);
-        let pieces = Pieces::within(levels / 255.0 * SLACK);
+        let pieces = pieces(levels, rounding_levels(reach, radius));
         let count = circles.iter().map(Vec::len).sum::<usize>() * pieces.knots.len();
         let has_rings = least == radius && 2 * count <= options.max_vertices;
         let rings = match facing.filter(|_| has_rings) {

@@ -101,6 +101,16 @@ impl ShadowMesh {
         }
     }
 
+    /// Adds the triangles of another mesh that does not meet this one.
+    pub(super) fn append(&mut self, other: Self) {
+        let first = self.vertices.len() as u32;
+        self.vertices.extend(other.vertices);
+        self.indices
+            .extend(other.indices.into_iter().map(|index| first + index));
+        self.error_levels = self.error_levels.max(other.error_levels);
+        self.incomplete = self.incomplete.or(other.incomplete);
+    }
+
     pub(super) fn empty() -> Self {
         Self {
             vertices: Vec::new(),

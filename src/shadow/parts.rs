@@ -110,6 +110,11 @@ impl Shadow {
         };
     }
 
+    /// Whether it has [`Self::parts`] that do not meet.
+    pub(crate) fn is_apart(&self) -> bool {
+        !self.parts.is_empty()
+    }
+
     /// The shadows that this one is drawn as on pixels of which there are so many a scene unit.
     pub(crate) fn parts(&self, per_unit: f64) -> &[Self] {
         if self.parts.is_empty() || per_unit < 1.0 {

@@ -388,6 +388,51 @@ fn a_penumbra_too_narrow_for_its_coordinates_states_what_corners_lose() {
 }
 
 /// Cut into lines, its points miss the line by rounding errors: slivers of no area that a point could be in.
+/// Rounding takes its part of the tolerance, and all that remains is kept; where nothing does the mesh says so, and how wrong it is.
+#[test]
+fn outlines_far_from_the_origin_keep_what_rounding_leaves() {
+    let mut random = Lots(5);
+    let [mut complete, mut narrow] = [0; 2];
+    for _ in 0..150 {
+        let far = 10_f32.powf(2.0 + 5.0 * random.next());
+        let radius = 10_f32.powf(-1.0 + 3.0 * random.next());
+        let tolerance = TOLERANCES[(random.next() * 4.99) as usize];
+        let count = 3 + (random.next() * 5.0) as u8;
+        let corner = |i: u8| {
+            let angle = f32::from(i) * core::f32::consts::TAU / f32::from(count);
+            [angle.cos(), angle.sin()].map(|v| v * (20.0 + 50.0 * random.next()))
+        };
+        let ring: Vec<[f32; 2]> = (0..count).map(corner).collect();
+        let shape = Shape::polygon(&[ring], FillRule::NonZero).unwrap();
+        let shape = shape.translated([far * random.next(), far]).unwrap();
+        let light = Light::directional([0.0, 0.0], radius).unwrap();
+        let shadow = light.cast(&shape, 1.0, 0.0).unwrap();
+        let mesh = shadow.mesh(levels(tolerance));
+        match mesh.incomplete() {
+            None => {
+                complete += 1;
+                sanity_check(&mesh);
+                assert!(mesh.error_levels() <= f64::from(tolerance));
+            }
+            Some(reason) => {
+                narrow += 1;
+                assert_eq!(reason, Incomplete::Narrow, "{far}, r {radius}, {tolerance}");
+            }
+        }
+        if mesh.error_levels() < 255.0 {
+            let worst = sampled_error(&shadow, &mesh).0;
+            // Of the samples' own places too.
+            let rounding = f64::from(far * f32::EPSILON / radius) * 255.0;
+            assert!(
+                worst <= mesh.error_levels() + rounding,
+                "{far}, r {radius}, {tolerance}: {worst} levels"
+            );
+        }
+    }
+    println!("{complete} complete, {narrow} not");
+    assert!(complete > 50 && narrow > 20);
+}
+
 #[test]
 fn a_curve_along_a_line_is_filled_with_nothing() {
     let mut path = penumbral::Path::new();

@@ -46,6 +46,55 @@ fn cards_far_down_a_list_are_strips_as_well() {
     }
 }
 
+/// As widths that are animated end: the density is within the tolerance of none.
+#[test]
+fn slivers_of_rectangles_have_meshes() {
+    for radius in [0.001, 5.0, 100.0, 900.0] {
+        let light = Light::directional([0.0, 0.0], radius).unwrap();
+        for share in [1e-30, 1e-9, 1e-7, 4e-7, 1e-6, 1e-5, 1e-3] {
+            for [w, h] in [[share * radius, 10.0], [10.0, share * radius]] {
+                let shape = Shape::rect(100.0, 1.0, w, h).unwrap();
+                let shadow = light.cast(&shape, 1.0, 0.0).unwrap();
+                let options = MeshOptions::new(levels(1.0));
+                for options in [options, options.quick()] {
+                    let mesh = shadow.mesh(options);
+                    sanity_check(&mesh);
+                    if mesh.is_complete() {
+                        let worst = dense_error(&shadow, &mesh, 4);
+                        assert!(worst <= 1.0, "{w} x {h}, r {radius}: {worst} levels");
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn cards_that_do_not_meet_are_meshed_one_by_one() {
+    let light = Light::android(400.0).unwrap();
+    let card = |i: u8| Shape::rounded_rect(16.0, 20.0 + 84.0 * f32::from(i), 200.0, 72.0, 12.0);
+    let cards: Vec<Shape> = (0..12).map(|i| card(i).unwrap()).collect();
+    for options in [
+        MeshOptions::new(levels(1.0)),
+        MeshOptions::new(levels(1.0)).quick(),
+    ] {
+        let (mut scratch, mut apart) = (Scratch::new(), MeshBuffers::<u32>::new());
+        for card in &cards {
+            let shadow = light.cast(card, 2.0, 0.0).unwrap();
+            shadow.mesh_into(&mut apart, options, &mut scratch).unwrap();
+        }
+        let shadow = light.cast_all(&cards, 2.0, 0.0).unwrap();
+        let mesh = shadow.mesh(options);
+        sanity_check(&mesh);
+        assert_eq!(mesh.indices().len(), apart.indices.len());
+        let mut together = MeshBuffers::<u32>::new();
+        shadow
+            .mesh_into(&mut together, options, &mut scratch)
+            .unwrap();
+        assert_eq!(mesh.vertices(), together.vertices);
+    }
+}
+
 #[test]
 fn rounded_rectangles_keep_their_tolerance() {
     rounded_rectangles(40);

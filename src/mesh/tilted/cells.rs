@@ -533,6 +533,7 @@ mod tests {
                     (50.0, 80.0),
                     (60.0, 130.0),
                     (20.0, 60.0),
+                    (20.0, 90.0),
                 ] {
                     let angle = f32::to_radians(degrees);
                     let pose = Pose::turned(elevation, [80.0, 80.0], [1.0, 0.4], angle).unwrap();
