@@ -6,27 +6,23 @@ use glam::DVec2;
 
 use super::{MeshVertex, ShadowMesh};
 use crate::apart::{around, around_points};
-use crate::svg::{Svg, number};
+use crate::svg::Svg;
 use crate::tone::Color;
 
 impl ShadowMesh {
-    /// The mesh as Wavefront OBJ: a vertex has its density as z, so that a viewer shows it as a relief, and the group is
-    /// named `name`. `first` is the number of vertices before it in the same file.
+    /// The mesh as Wavefront OBJ: a vertex has its density as z, so that a viewer shows it as a relief, all in the fewest digits that are
+    /// read back as they were; the group is named `name`. `first` is the number of vertices before it in the same file.
     #[must_use]
     pub fn to_obj(&self, name: &str, first: usize) -> String {
         let mut text = String::new();
         // Writing to a string cannot fail.
         let _ = writeln!(text, "o {}", name.replace(char::is_whitespace, "_"));
         for vertex in &self.vertices {
-            let [x, y] = vertex.position.map(f64::from);
-            let density = f64::from(vertex.density);
-            let _ = writeln!(
-                text,
-                "v {} {} {}",
-                number(x, 4),
-                number(y, 4),
-                number(density, 6)
-            );
+            let MeshVertex {
+                position: [x, y],
+                density,
+            } = vertex;
+            let _ = writeln!(text, "v {x} {y} {density}");
         }
         for corners in self.indices.chunks_exact(3) {
             let [a, b, c] = [0, 1, 2].map(|i: usize| corners[i] as usize + first + 1);
