@@ -5,7 +5,7 @@
 #[expect(dead_code, reason = "other tests take more of it")]
 mod common;
 
-use common::{Random, setting};
+use common::{Random, setting, worst_of};
 use penumbral::plan::Method;
 use penumbral::{
     Color, DensityMap, FillRule, Light, PixelOptions, Pose, Scene, Scratch, Shape, Surface, Tone,
@@ -181,8 +181,7 @@ fn crowds_of_dots_under_a_card_are_as_dark_as_polygons() {
         )
         .unwrap()
     });
-    let errors = dots.iter().zip(&polygons).map(|(a, b)| (a - b).abs());
-    let worst = errors.fold(0.0, f32::max) * 255.0;
+    let worst = worst_of(&dots, &polygons);
     println!("400 dots under a card: worst {worst:.3} levels");
     assert!(worst < 1.0, "{worst} levels");
 }
@@ -267,10 +266,7 @@ fn a_tilted_card_and_a_level_one_hide_their_union() {
         map
     };
     let (posed, level) = (scene(true), scene(false));
-    let errors = posed.densities().iter().zip(level.densities());
-    let worst = errors
-        .map(|(a, b)| (a - b).abs() * 255.0)
-        .fold(0.0, f32::max);
+    let worst = worst_of(posed.densities(), level.densities());
     println!("{worst} levels");
     assert!(worst < 1.2, "{worst} levels");
 }

@@ -14,7 +14,7 @@ mod common;
 use std::time::Instant;
 use std::{env, fs};
 
-use common::{Summary, by, densities, worst_of};
+use common::{Summary, by, densities, worst, worst_of};
 use penumbral::plan::Method;
 use penumbral::{
     FillRule, Grid, Light, MeshBuffers, MeshOptions, MeshVertex, Path, Scratch, Shadow, Shape,
@@ -170,7 +170,7 @@ fn error_of(shadow: &Shadow, corners: [MeshVertex; 3]) -> f64 {
         let place = [mix(|v| v.position[0]), mix(|v| v.position[1])];
         (f64::from(mix(|v| v.density)) - shadow.density_at(place)).abs() * 255.0
     };
-    weights.into_iter().map(error).fold(0.0, f64::max)
+    worst(weights.map(error))
 }
 
 fn print_times(what: &str, times: &mut [(f64, &String)]) {

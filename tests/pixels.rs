@@ -8,7 +8,9 @@ mod common;
 
 use std::ops::Range;
 
-use common::{Case, Random, Summary, bits, by, case, densities, seeds, shapes, snapped, worst_of};
+use common::{
+    Case, Random, Summary, bits, by, case, densities, seeds, shapes, snapped, worst, worst_of,
+};
 use penumbral::plan::{self, Method, Target};
 use penumbral::{
     Color, Error, Grid, Hidden, Light, Paint, PixelOptions, Scratch, Shadow, Shape, Tolerance,
@@ -885,17 +887,13 @@ fn bytes_are_densities_rounded() {
                 case.shadow
                     .fill_a8(&case.grid, &mut bytes, &options, &mut scratch)
                     .unwrap();
-                let error = floats
+                let errors = floats
                     .iter()
                     .zip(&bytes)
                     .map(|(density, byte)| (density * 255.0 - f32::from(*byte)).abs());
+                let error = worst(errors.map(f64::from)) as f32;
                 let rounding = if dither { "dithered" } else { "rounded" };
-                summary.add(
-                    format!("bytes, {rounding}"),
-                    error.fold(0.0, f32::max),
-                    allowed,
-                    &label,
-                );
+                summary.add(format!("bytes, {rounding}"), error, allowed, &label);
             }
         }
     }
@@ -1064,7 +1062,7 @@ fn paint_is_blended_source_over() {
             case.shadow
                 .blend_rgba8(&case.grid, &mut canvas, &paint, &options, &mut scratch)
                 .unwrap();
-            let mut worst: f64 = 0.0;
+            let mut most: f64 = 0.0;
             for (pixel, density) in floats.iter().enumerate() {
                 let (got, below) = (
                     &canvas[4 * pixel..4 * pixel + 4],
@@ -1075,7 +1073,7 @@ fn paint_is_blended_source_over() {
                     .iter()
                     .zip(exact)
                     .map(|(got, exact)| (f64::from(*got) - exact).abs());
-                worst = errors.fold(worst, f64::max);
+                most = most.max(worst(errors));
                 assert!(
                     got[..3].iter().all(|channel| *channel <= got[3]),
                     "{got:?} of {below:?}: {label}"
@@ -1086,7 +1084,7 @@ fn paint_is_blended_source_over() {
             } else {
                 ("rounded", 0.51)
             };
-            summary.add(format!("paint, {rounding}"), worst as f32, allowed, &label);
+            summary.add(format!("paint, {rounding}"), most as f32, allowed, &label);
         }
     }
     summary.finish();

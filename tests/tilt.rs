@@ -2,8 +2,12 @@
 
 #![expect(clippy::unwrap_used, reason = "a pose that is refused fails the test")]
 
+#[expect(dead_code, reason = "other tests take more of it")]
+mod common;
+
 use core::f32::consts::PI;
 
+use common::worst_of;
 use penumbral::plan::Method;
 use penumbral::{
     FillRule, Grid, Incomplete, Light, MeshVertex, Path, PixelOptions, Pose, Scratch, ShadowMesh,
@@ -136,8 +140,7 @@ fn curves_are_fine_enough_in_any_unit_and_however_magnified() {
                     posed
                         .fill_f32(&grid, &mut by[1], &exact, &mut scratch)
                         .unwrap();
-                    let errors = by[0].iter().zip(&by[1]).map(|(a, b)| (a - b).abs() * 255.0);
-                    let error = errors.fold(0.0, f32::max);
+                    let error = worst_of(&by[0], &by[1]);
                     println!(
                         "a unit of {} px, {magnified} times, r {radius} px: {error:.3} levels",
                         1.0 / unit
@@ -221,8 +224,7 @@ fn pixels_are_the_closed_form_through_the_whole_flip() {
                 assert!(error < 1e-6, "{degrees} degrees, {point:?}: {error:e}");
             }
             if let Some(before) = before {
-                let change = densities.iter().zip(&before).map(|(a, b)| (a - b).abs());
-                let most = change.fold(0.0, f32::max) * 255.0;
+                let most = worst_of(&densities, &before);
                 // A degree moves the card's ends by 0.6 px, where r is 8 px and more: 2 / (π r) of density a pixel.
                 assert!(most < 14.0, "{degrees} degrees: {most} levels");
             }

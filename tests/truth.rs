@@ -5,10 +5,14 @@
     reason = "a fixture that cannot be read fails the test"
 )]
 
+#[expect(dead_code, reason = "other tests take more of it")]
+mod common;
+
 use std::fs::{self, File};
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
+use common::{worst, worst_of};
 use penumbral::plan::{Method, Target, choose};
 use penumbral::{
     DensityMap, FillRule, Grid, Light, PixelOptions, Scene, Scratch, Shape, Tolerance,
@@ -83,7 +87,7 @@ fn maps_of_an_independent_closed_form_agree() {
             assert_eq!(map.densities().len(), truth.len(), "{name}");
             let error = |(got, truth): (&f32, &f64)| (f64::from(*got) - truth).abs() * 255.0;
             let errors: Vec<f64> = map.densities().iter().zip(&truth).map(error).collect();
-            let worst = errors.iter().copied().fold(0.0, f64::max);
+            let worst = worst(errors.iter().copied());
             let rms = (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt();
             let label = method.map_or("auto".to_owned(), |method| method.to_string());
             println!(
@@ -114,8 +118,7 @@ fn pairs_hide_what_a_polygon_boolean_says() {
             shadows.draw(&mut map, &options, &mut scratch).unwrap();
             assert_eq!(map.densities().len(), truth.len());
             let error = |(got, truth): (&f32, &f64)| (f64::from(*got) - truth).abs() * 255.0;
-            let worst = map.densities().iter().zip(&truth).map(error);
-            let worst = worst.fold(0.0, f64::max);
+            let worst = worst(map.densities().iter().zip(&truth).map(error));
             println!("{:?} {method:?}: {worst:.3} levels", path.file_stem());
             assert!(
                 worst <= 1.0,
@@ -336,8 +339,7 @@ fn the_plans_choice_keeps_the_tolerance_on_random_shadows() {
         };
         draw(Some(Method::Exact), &mut exact);
         draw(None, &mut got);
-        let error = |(a, b): (&f32, &f32)| f64::from((a - b).abs()) * 255.0;
-        let worst = got.iter().zip(&exact).map(error).fold(0.0, f64::max);
+        let worst = f64::from(worst_of(&got, &exact));
         let target = Target::Pixels(grid);
         let chosen = choose(&shadow, Tolerance::levels(levels).unwrap(), target).method;
         let words = format!("scene {scene}: {chosen}, r {radius}, {worst} of {levels} levels");

@@ -524,7 +524,8 @@ pub struct Summary {
 
 impl Summary {
     pub fn add(&mut self, what: String, error: f32, allowed: f32, label: &str) {
-        if error > allowed {
+        let is_kept = error <= allowed;
+        if !is_kept {
             self.failures.push(format!(
                 "{what}: {error:.3} levels, {allowed} allowed: {label}"
             ));
@@ -548,11 +549,18 @@ impl Summary {
     }
 }
 
+/// The worst of errors in levels: what is no number is as wrong as can be, where `max` would leave it out.
+pub fn worst(errors: impl IntoIterator<Item = f64>) -> f64 {
+    errors.into_iter().fold(0.0, |worst: f64, error| {
+        worst.max(if error.is_nan() { 255.0 } else { error })
+    })
+}
+
+/// How far densities are from others, as many, in levels.
 pub fn worst_of(a: &[f32], b: &[f32]) -> f32 {
-    a.iter()
-        .zip(b)
-        .map(|(a, b)| (a - b).abs() * 255.0)
-        .fold(0.0, f32::max)
+    assert_eq!(a.len(), b.len());
+    let errors = a.iter().zip(b).map(|(a, b)| (a - b).abs() * 255.0);
+    worst(errors.map(f64::from)) as f32
 }
 
 /// A number from the environment.

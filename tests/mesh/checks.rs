@@ -4,6 +4,8 @@ use std::collections::HashMap;
 
 use penumbral::{Light, MeshVertex, Shadow, ShadowMesh, Shape, Tolerance};
 
+use crate::common::worst;
+
 /// Weights of a triangle's corners, none of them where refinement looks.
 pub(crate) const SAMPLES: [[f64; 3]; 9] = [
     [0.25, 0.25, 0.5],
@@ -26,7 +28,7 @@ pub(crate) fn levels(levels: f32) -> Tolerance {
 
 /// The largest and the root mean square error by sampling inside the triangles, in levels.
 pub(crate) fn sampled_error(shadow: &Shadow, mesh: &ShadowMesh) -> (f64, f64) {
-    let (mut worst, mut sum, mut area_sum) = (0.0_f64, 0.0, 0.0);
+    let (mut most, mut sum, mut area_sum) = (0.0_f64, 0.0, 0.0);
     for [a, b, c] in mesh.triangles() {
         let area = double_area(a.position, b.position, c.position);
         for weights in SAMPLES {
@@ -41,13 +43,13 @@ pub(crate) fn sampled_error(shadow: &Shadow, mesh: &ShadowMesh) -> (f64, f64) {
             let y = mix([a.position[1], b.position[1], c.position[1]]);
             let density = mix([a.density, b.density, c.density]);
             let error = (density - shadow.density_at([x as f32, y as f32])) * 255.0;
-            worst = worst.max(error.abs());
+            most = most.max(worst([error.abs()]));
             sum += error * error * area;
             area_sum += area;
         }
     }
     (
-        worst,
+        most,
         if area_sum > 0.0 {
             (sum / area_sum).sqrt()
         } else {
@@ -166,7 +168,7 @@ pub(crate) fn dense_error_of(
         }
         error
     };
-    tops.into_iter().take(16).map(climb).fold(0.0, f64::max)
+    worst(tops.into_iter().take(16).map(climb))
 }
 
 /// The error in levels where a triangle's first two corners have these weights.
@@ -177,7 +179,8 @@ fn error_in(shadow: &Shadow, corners: &[MeshVertex; 3], [a, b]: [f64; 2]) -> f64
         values.zip(weights).map(|(v, w)| v * w).sum::<f64>()
     };
     let (x, y) = (mix(|v| v.position[0]), mix(|v| v.position[1]));
-    (mix(|v| v.density) - shadow.density_at([x as f32, y as f32])).abs() * 255.0
+    // No comparison finds what is no number.
+    worst([(mix(|v| v.density) - shadow.density_at([x as f32, y as f32])).abs() * 255.0])
 }
 
 pub(crate) fn android_card(elevation: f32) -> Shadow {

@@ -7,6 +7,7 @@ use penumbral::{
 };
 
 use crate::checks::*;
+use crate::common::worst;
 
 /// The penumbra radius of most of them.
 const RADIUS: f32 = 10.0;
@@ -123,8 +124,9 @@ fn a_card_that_rises_moves_its_vertices() {
                 let [x, y] = [0, 1].map(|i: usize| a.position[i] - b.position[i]);
                 x.hypot(y).max(RADIUS * (a.density - b.density).abs())
             };
+            assert_eq!(buffers.vertices.len(), before.vertices.len());
             let pairs = buffers.vertices.iter().zip(&before.vertices);
-            let most = pairs.map(|(a, b)| far(a, b)).fold(0.0, f32::max);
+            let most = worst(pairs.map(|(a, b)| f64::from(far(a, b)))) as f32;
             let may = 2.0 * (radius - radius_before).abs();
             assert!(most <= may, "{most} from {radius_before} to {radius}");
         }

@@ -8,6 +8,7 @@ use penumbral::{
 };
 
 use crate::checks::*;
+use crate::common::worst;
 
 /// Each shadow on the ground of the fixtures' scenes, once, with the scene's name.
 fn fixture_shadows() -> Vec<(String, Shadow)> {
@@ -223,8 +224,8 @@ fn casters_too_small_for_an_umbra_peak_where_the_closed_form_does() {
         let top = mesh
             .vertices()
             .iter()
-            .map(|vertex| f64::from(vertex.density))
-            .fold(0.0, f64::max);
+            .map(|vertex| f64::from(vertex.density));
+        let top = worst(top);
         assert!((top - peak).abs() < 3e-3, "{top}");
     }
 }
@@ -381,7 +382,7 @@ fn a_penumbra_too_narrow_for_its_coordinates_states_what_corners_lose() {
         let exact = shadow.density_at([4e6 - 8.5 + x, -4e6 - 8.5 + y]);
         (f64::from(*density) - exact).abs() * 255.0
     };
-    let worst = densities.iter().enumerate().map(error).fold(0.0, f64::max);
+    let worst = worst(densities.iter().enumerate().map(error));
     println!("{worst} levels, stated {}", mesh.error_levels());
     assert_eq!(mesh.incomplete(), Some(Incomplete::Narrow));
     assert!(worst <= mesh.error_levels(), "{worst}");

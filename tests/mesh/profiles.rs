@@ -3,6 +3,7 @@
 use penumbral::{Grid, Light, MeshOptions, Profile, Shadow, Shape};
 
 use crate::checks::*;
+use crate::common::worst;
 
 fn half_plane() -> Shadow {
     // One edge at x = 500 with nothing else near.
@@ -19,7 +20,7 @@ fn worst_on_row(shadow: &Shadow, densities: &[f32]) -> f64 {
         let x = 485.0 + (i as f32 + 0.5) / 20.0;
         (f64::from(*density) - shadow.density_at([x, 0.025])).abs() * 255.0
     };
-    densities.iter().enumerate().map(error).fold(0.0, f64::max)
+    worst(densities.iter().enumerate().map(error))
 }
 
 #[test]

@@ -7,7 +7,7 @@ use core::ops::Range;
 use penumbral::{FillRule, Light, MeshOptions, Path, Shadow, Shape};
 
 use crate::checks::*;
-use crate::common::snapped;
+use crate::common::{snapped, worst};
 
 /// The penumbra radius of all of them.
 const RADIUS: f32 = 10.0;
@@ -108,7 +108,7 @@ fn error_of(name: &str, shapes: &[Shape], shadow: &Shadow, tolerance: f32) -> f6
         assert!(missing.abs() <= slack, "{name}: mass off by {missing}");
         error / tolerance
     });
-    errors.into_iter().fold(0.0, f64::max)
+    worst(errors)
 }
 
 fn cast(shape: &Shape) -> Shadow {

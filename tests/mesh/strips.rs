@@ -261,8 +261,7 @@ fn one_interval_fewer_is_too_coarse() {
         assert_eq!(rings(&mesh), count);
         dense_error(&shadow, &mesh, 6)
     });
-    let worst = worst.into_iter().fold(0.0, f64::max);
-    assert!(worst > 1.0, "{worst}");
+    assert!(worst.iter().any(|error| *error > 1.0), "{worst:?}");
 }
 
 #[test]
