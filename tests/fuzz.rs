@@ -8,8 +8,9 @@ mod common;
 #[path = "../fuzz/targets.rs"]
 mod targets;
 
+use std::fs;
 use std::panic::catch_unwind;
-use std::{fs, path};
+use std::path::Path;
 
 use common::{Random, seeds};
 use targets::TARGETS;
@@ -82,14 +83,17 @@ fn texts(name: &str) -> Vec<String> {
 #[test]
 fn nothing_that_is_fuzzed_fails() {
     let cases = seeds("each target", 60);
+    let seeds = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/seeds");
+    let mut seeded = 0;
     for (name, target) in TARGETS {
-        let seeds = path::Path::new(env!("CARGO_MANIFEST_DIR"))
-            .join("fuzz/seeds")
-            .join(name);
-        let kept = fs::read_dir(seeds).into_iter().flatten();
-        let mut inputs: Vec<Vec<u8>> = kept
-            .map(|file| fs::read(file.unwrap().path()).unwrap())
-            .collect();
+        let kept = seeds.join(name);
+        let mut inputs: Vec<Vec<u8>> = Vec::new();
+        if kept.exists() {
+            let files = fs::read_dir(kept).unwrap();
+            inputs.extend(files.map(|file| fs::read(file.unwrap().path()).unwrap()));
+            assert!(!inputs.is_empty(), "{name}: no seeds in its folder");
+            seeded += 1;
+        }
         let texts = texts(name);
         inputs.extend(cases.clone().map(|seed| {
             let mut random = Random::new(seed as u64);
@@ -106,4 +110,7 @@ fn nothing_that_is_fuzzed_fails() {
         }
         println!("{name}: {} inputs", inputs.len());
     }
+    // None was passed by for being called otherwise than its target.
+    assert!(seeded > 0);
+    assert_eq!(seeded, fs::read_dir(seeds).unwrap().count());
 }

@@ -77,14 +77,15 @@ fn draw(renderer: &mut Renderer, scene: &Scene) -> Pixmap {
     pixmap
 }
 
-fn soak(time: Duration, least: usize, seed: u64) {
+/// Draws scenes for so long, and twice as many as warm memory up after those at least.
+fn soak(time: Duration, warm_up: usize, seed: u64) {
     let start = Instant::now();
     let mut random = Random::new(seed);
     let (mut renderer, mut scratch) = (Renderer::new(), Scratch::new());
     let mut patches: HashMap<ShadowKey, NinePatch> = HashMap::new();
     let grid = Grid::new([0.0, 0.0], [SIZE, SIZE], 1.0).unwrap();
-    let (mut scenes, mut frames, mut worst, mut early) = (0, 0_usize, Duration::ZERO, 0);
-    while scenes < least || start.elapsed() < time {
+    let (mut scenes, mut frames, mut worst, mut early) = (0, 0_usize, Duration::ZERO, None);
+    while scenes < 3 * warm_up || start.elapsed() < time {
         let light = Light::new([120.0, random.between(-50.0, 200.0), 600.0], 800.0).unwrap();
         let actors: Vec<Actor> = (0..1 + random.below(7))
             .flat_map(|_| Actor::random(&mut random))
@@ -121,27 +122,27 @@ fn soak(time: Duration, least: usize, seed: u64) {
             }
         }
         scenes += 1;
-        if scenes == 200 {
-            early = resident();
+        if scenes == warm_up {
+            early = Some(resident());
         }
         if scenes % 1000 == 0 {
             println!("{scenes} scenes, {} pages", resident());
         }
     }
+    let early = early.unwrap();
     println!(
-        "{frames} frames of {scenes} scenes in {:.0?}: worst frame {worst:.1?}; {early} pages after 200 scenes, {} at the end",
+        "{frames} frames of {scenes} scenes in {:.0?}: worst frame {worst:.1?}; {early} pages after {warm_up} scenes, {} at the end",
         start.elapsed(),
         resident()
     );
-    if early > 0 {
-        // What the largest scene so far took.
-        assert!(resident() < early + early / 2 + 4096);
-    }
+    // Both are 0 where it cannot be told; more is what the largest scene so far took.
+    assert!(early > 0 || !cfg!(target_os = "linux"));
+    assert!(resident() <= early + early / 2 + 4096);
 }
 
 #[test]
 fn a_few_scenes_leave_nothing_behind() {
-    soak(Duration::ZERO, 1, 5);
+    soak(Duration::ZERO, 4, 5);
 }
 
 #[test]
@@ -149,5 +150,5 @@ fn a_few_scenes_leave_nothing_behind() {
 fn minutes_of_scenes_leave_nothing_behind() {
     let minutes = setting("PENUMBRAL_MINUTES", 10) as u64;
     let seed = setting("PENUMBRAL_SEED", 0) as u64;
-    soak(Duration::from_secs(60 * minutes), 1, seed);
+    soak(Duration::from_secs(60 * minutes), 200, seed);
 }

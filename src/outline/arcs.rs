@@ -164,11 +164,14 @@ mod tests {
                     (found / exact - 1.0).abs() < 2e-5,
                     "{levels} {radius}: {found}"
                 );
+                let mut count = 0;
                 for edge in &edges {
                     let Edge::Arc(arc) = edge else { continue };
+                    count += 1;
                     assert!((arc.at(arc.start) - arc.from).length() < 1e-9);
                     assert!((arc.at(arc.start + arc.sweep) - arc.to).length() < 1e-9);
                 }
+                assert!(count > 0, "{levels} {radius}: no arcs");
             }
         }
     }
