@@ -34,6 +34,7 @@ pub type Result<T, E = Error> = core::result::Result<T, E>;
 /// | [`ShadowTooLarge`](Error::ShadowTooLarge) | a cast from elevation 599.99994 under a light at z = 600 |
 /// | [`PictureSize`](Error::PictureSize) | `Grid::new([0.0, 0.0], [0, 5], 1.0)`, a canvas of a million units square |
 /// | [`BufferSize`](Error::BufferSize) | 99 bytes for a grid of 10 x 10, a pixmap of another size than its scene |
+/// | [`MeshRoom`](Error::MeshRoom) | [`MeshSlices`](crate::MeshSlices) of ten vertices for a mesh of a hundred |
 /// | [`OtherGrid`](Error::OtherGrid) | [`PixelOptions::with_hidden`](crate::PixelOptions::with_hidden) that was made for another grid |
 /// | [`NotFlat`](Error::NotFlat) | [`Pose::of_corners`](crate::Pose::of_corners) with the elevations 5, 9, 14, 11 |
 /// | [`NotOpaque`](Error::NotOpaque) | a scene's background `#fafafa80` |
@@ -202,6 +203,16 @@ pub enum Error {
         /// What it holds.
         length: usize,
         /// What it should hold.
+        needed: usize,
+    },
+    /// Slices that a mesh may not fit into.
+    #[error("there is room for {length} {field}, the mesh may need {needed}: give a longer slice")]
+    MeshRoom {
+        /// What the slice holds: vertices or indices.
+        field: &'static str,
+        /// How many of them.
+        length: usize,
+        /// How many there may be, with those that it has already.
         needed: usize,
     },
     /// A scene file that cannot be understood.

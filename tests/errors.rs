@@ -4,8 +4,8 @@
 
 use penumbral::{
     Blending, Bounds, Color, DensityMap, Error, FillRule, Grid, Hidden, Light, Limits,
-    MAX_SEGMENTS, Paint, Path, PixelOptions, Pose, Renderer, Scene, Scratch, Shape, Surface,
-    Tolerance, Tone, plan,
+    MAX_SEGMENTS, MeshSlices, MeshVertex, Paint, Path, PixelOptions, Pose, Renderer, Scene,
+    Scratch, Shape, Surface, Tolerance, Tone, plan,
 };
 use tiny_skia::Pixmap;
 
@@ -66,6 +66,20 @@ fn skipped(options: &PixelOptions<'_>) -> Result<(), Error> {
     plan::skip(&shadow, &grid, options, None).map(drop)
 }
 
+/// Makes a mesh into slices of so many vertices and indices.
+fn meshed(vertices: usize, indices: usize) -> Result<(), Error> {
+    let vertex = MeshVertex {
+        position: [0.0; 2],
+        density: 0.0,
+    };
+    let (mut vertices, mut indices) = (vec![vertex; vertices], vec![0_u32; indices]);
+    let mut slices = MeshSlices::new(&mut vertices, &mut indices);
+    let shadow = light().cast(&card(), 8.0, 0.0)?;
+    let mut scratch = Scratch::new();
+    let made = shadow.mesh_into(&mut slices, Tolerance::levels(4.0)?, &mut scratch);
+    made.map(drop)
+}
+
 fn limited(limits: Limits) -> Result<(), Error> {
     Renderer::with_limits(limits).render(&scene(), &mut pixmap(60))
 }
@@ -99,6 +113,8 @@ fn cases() -> Vec<(&'static str, Result<(), Error>, &'static str)> {
         ("BufferSize", drawn(99, None), "the buffer holds 99 bytes or pixels, the grid needs 100: allocate stride x height"),
         ("BufferSize", Paint::new(Color::BLACK, 0.2).and_then(|paint| paint.blend_mask(&grid(), &[0; 99], &mut [0; 400], &mut Scratch::new())), "the buffer holds 99 bytes or pixels, the grid needs 100: allocate stride x height"),
         ("BufferSize", Renderer::new().render(&scene(), &mut pixmap(61)), "the buffer holds 2440 bytes or pixels, the grid needs 2400: allocate stride x height"),
+        ("MeshRoom", meshed(10, 999), "there is room for 10 vertices, the mesh may need "),
+        ("MeshRoom", meshed(999, 10), "there is room for 10 indices, the mesh may need "),
         ("OtherGrid", drawn(100, Grid::new([1.0, 0.0], [10, 10], 1.0).ok()), "options.hidden was made for another grid: make it for the grid that is drawn"),
         ("OtherGrid", hiding(mapped), "options.hidden was made for another grid: make it for the grid that is drawn"),
         ("OtherGrid", hiding(skipped), "options.hidden was made for another grid: make it for the grid that is drawn"),
@@ -157,7 +173,7 @@ fn the_table_has_every_error_and_each_is_tried() {
         let is_out = variant == "Stroke" || variant == "NotFinished" && !cfg!(feature = "finish");
         assert!(is_tried || is_out, "{variant}");
     }
-    assert_eq!(count, 21);
+    assert_eq!(count, 22);
 }
 
 /// Stopped wherever it asks, a drawing ends at once, and the next one is as if nothing had been.

@@ -127,7 +127,8 @@ impl<I: MeshIndex> MeshSink for MeshBuffers<I> {
 
 /// The number of the first of so many vertices to come, if all of them can be counted.
 fn first_index<I: MeshIndex>(first: usize, vertices: usize) -> Result<u32> {
-    let limit = I::MAX as usize;
+    // As many as there are numbers from 0 to the largest.
+    let limit = (I::MAX as usize).saturating_add(1);
     let count = first.saturating_add(vertices);
     if count > limit {
         return Err(Error::TooMany {
@@ -171,13 +172,21 @@ impl<'a, I> MeshSlices<'a, I> {
 impl<I: MeshIndex> MeshSink for MeshSlices<'_, I> {
     fn begin(&mut self, vertices: usize, triangles: usize) -> Result<()> {
         self.first = first_index::<I>(self.filled[0], vertices)?;
-        let room = |length: usize, needed: usize| match length < needed {
-            true => Err(Error::BufferSize { length, needed }),
-            false => Ok(()),
+        let room = |field, length: usize, filled: usize, more: usize| {
+            let needed = filled.saturating_add(more);
+            match length < needed {
+                true => Err(Error::MeshRoom {
+                    field,
+                    length,
+                    needed,
+                }),
+                false => Ok(()),
+            }
         };
-        room(self.vertices.len(), self.filled[0].saturating_add(vertices))?;
+        let [filled_vertices, filled_indices] = self.filled;
+        room("vertices", self.vertices.len(), filled_vertices, vertices)?;
         let indices = triangles.saturating_mul(3);
-        room(self.indices.len(), self.filled[1].saturating_add(indices))
+        room("indices", self.indices.len(), filled_indices, indices)
     }
 
     fn vertex(&mut self, vertex: MeshVertex) {

@@ -1,6 +1,6 @@
 //! Where triangles go.
 
-use penumbral::{Error, MeshBuffers, MeshSlices, MeshVertex, Scratch};
+use penumbral::{Error, MeshBuffers, MeshSink, MeshSlices, MeshVertex, Scratch};
 
 use crate::checks::*;
 
@@ -31,7 +31,7 @@ fn sinks_take_what_they_have_room_for() {
             .all(|(a, b)| usize::from(*b) == usize::from(*a) + count[0])
     );
     // Sixteen bits are enough for so many, and nothing is written of one too many.
-    while buffers.vertices.len() + count[0] <= usize::from(u16::MAX) {
+    while buffers.vertices.len() + count[0] <= 1 << 16 {
         into(&mut buffers).unwrap();
     }
     let before = buffers.clone().vertices;
@@ -44,7 +44,16 @@ fn sinks_take_what_they_have_room_for() {
     let mut indices = vec![0_u32; count[1] - 1];
     let mut slices = MeshSlices::new(&mut vertices, &mut indices);
     let refused = shadow.mesh_into(&mut slices, levels(4.0), &mut scratch);
-    assert!(matches!(refused, Err(Error::BufferSize { .. })));
+    let (needed, length) = (count[1], count[1] - 1);
+    let field = "indices";
+    assert_eq!(
+        refused,
+        Err(Error::MeshRoom {
+            field,
+            length,
+            needed
+        })
+    );
     assert_eq!(slices.filled(), [0, 0]);
     indices.push(0);
     let mut slices = MeshSlices::new(&mut vertices, &mut indices);
@@ -56,6 +65,29 @@ fn sinks_take_what_they_have_room_for() {
         (vertices.as_slice(), indices.as_slice()),
         (mesh.vertices(), mesh.indices())
     );
+}
+
+/// The default limit on a mesh's vertices is one that sixteen bits count.
+#[test]
+fn sixteen_bits_count_65536_vertices() {
+    let mut buffers = MeshBuffers::<u16>::new();
+    assert!(matches!(
+        buffers.begin(65_537, 0),
+        Err(Error::TooMany {
+            count: 65_537,
+            limit: 65_536,
+            ..
+        })
+    ));
+    let vertex = MeshVertex {
+        position: [0.0; 2],
+        density: 0.0,
+    };
+    buffers.begin(65_536, 1).unwrap();
+    (0..65_536).for_each(|_| buffers.vertex(vertex));
+    buffers.triangle([0, 1, 65_535]);
+    assert_eq!(buffers.indices, [0, 1, u16::MAX]);
+    assert!(buffers.begin(1, 0).is_err());
 }
 
 #[cfg(feature = "lyon")]
