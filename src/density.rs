@@ -107,6 +107,24 @@ pub(crate) fn draw(
     }
 }
 
+/// What draws a shadow that is one of the [`parts`](Shadow::parts_on): a method that cannot gives way to `direct`.
+pub(crate) fn method_of(shadow: &Shadow, on: &Grid, options: &PixelOptions<'_>) -> Method {
+    let per_unit = on.pixels_per_unit();
+    let is_able = |method| match method {
+        Method::NinePatch => nine_patch::suited(shadow, per_unit).is_some(),
+        Method::Grid => {
+            let (radius, extent) = (shadow.radius() * per_unit, shadow.extent() * per_unit);
+            grid::suits(radius, options.tolerance.as_levels(), extent)
+        }
+        Method::Exact | Method::Direct | Method::Mesh => true,
+    };
+    match options.method {
+        Some(method) if is_able(method) => method,
+        Some(_) => Method::Direct,
+        None => plan::choose(shadow, options.tolerance, plan::Target::Pixels(*on)).method,
+    }
+}
+
 fn draw_part(
     shadow: &Shadow,
     on: &Grid,
@@ -115,10 +133,7 @@ fn draw_part(
     sink: &mut dyn Sink,
 ) {
     let per_unit = on.pixels_per_unit();
-    let pixels = plan::Target::Pixels(*on);
-    let method = options
-        .method
-        .unwrap_or_else(|| plan::choose(shadow, options.tolerance, pixels).method);
+    let method = method_of(shadow, on, options);
     let level = scratch.level();
     match method {
         Method::Exact => exact::fill(shadow, on, options.hidden, scratch, sink),
@@ -140,8 +155,7 @@ fn draw_part(
         Method::Direct | Method::Grid | Method::NinePatch => {
             let levels = options.tolerance.as_levels();
             let radius = shadow.radius() * per_unit;
-            let sums =
-                method == Method::Grid && grid::suits(radius, levels, shadow.extent() * per_unit);
+            let sums = method == Method::Grid;
             // An outline that is kept is the same for both methods.
             let curves = if sums || !shadow.has_simple_curves() {
                 CURVES

@@ -147,15 +147,23 @@ const COSTS: Costs = Costs {
     hard_triangle: 400.0,
 };
 
-impl fmt::Display for Method {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
+impl Method {
+    /// Its name, as texts have it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
             Self::Exact => "exact",
             Self::Direct => "direct",
             Self::Grid => "grid",
             Self::NinePatch => "nine-patch",
             Self::Mesh => "mesh",
-        })
+        }
+    }
+}
+
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
     }
 }
 

@@ -292,7 +292,7 @@ mod density {
         let line = folder.density("-o out.png");
         let keys: Vec<&String> = line.as_object().unwrap().keys().collect();
         assert_eq!(keys, ["max_density", "median_ns", "method", "pixels"]);
-        assert_eq!(line["method"], "auto");
+        assert_eq!(line["method"], "nine-patch");
         assert_eq!(line["pixels"], 120 * 80);
         assert!(line["median_ns"].as_u64().unwrap() > 0);
         let picture = folder.picture("out.png");
@@ -322,14 +322,42 @@ mod density {
             let folder = Folder::with_scene(format!(
                 r#"{{"canvas": [241, 61], "light": {{"x": 120.5, "y": 30.5, "z": 500, "radius": 800}}, "surfaces": [{surface}]}}"#
             ));
-            for method in ["auto", "exact", "mesh"] {
+            for (method, used) in [("auto", "nine-patch"), ("exact", "exact"), ("mesh", "mesh")] {
                 let line = folder.density(&format!("-o out.png --method {method}"));
-                assert_eq!(line["method"], method);
+                assert_eq!(line["method"], used);
                 // The peaks are given to three digits.
                 let max = line["max_density"].as_f64().unwrap();
                 assert!((max - peak).abs() < 0.002, "{method}: {max}, not {peak}");
             }
         }
+    }
+
+    /// Cards are for any method; a polygon is none for `nine-patch`, and a penumbra of 0.8 px is too narrow for `grid`.
+    #[test]
+    fn the_methods_that_drew_are_told() {
+        let scene = |surfaces: &str| {
+            Folder::with_scene(format!(
+                r#"{{"canvas": [100, 60], "light": {{"x": 50, "y": 0, "z": 600, "radius": 800}}, "surfaces": [{surfaces}]}}"#
+            ))
+        };
+        let card = |elevation: f32| {
+            format!(
+                r#"{{"shape": "rrect", "x": 10, "y": 10, "w": 30, "h": 30, "elevation": {elevation}}}"#
+            )
+        };
+        let star =
+            r#"{"shape": "polygon", "points": [[60, 10], [90, 20], [60, 50]], "elevation": 8}"#;
+        let both = scene(&format!("{}, {star}", card(6.0)));
+        let used = |folder: &Folder, method: &str| {
+            let line = folder.density(&format!("-o out.png --method {method}"));
+            line["method"].as_str().unwrap().to_owned()
+        };
+        assert_eq!(used(&both, "nine-patch"), "direct+nine-patch");
+        assert_eq!(used(&both, "direct"), "direct");
+        assert_eq!(used(&scene(&card(16.0)), "grid"), "grid");
+        assert_eq!(used(&scene(&card(0.6)), "grid"), "direct");
+        assert_eq!(used(&scene(&card(0.0)), "mesh"), "none");
+        assert_eq!(used(&with_tilted_and_image(), "mesh"), "image+tilted");
     }
 
     #[test]

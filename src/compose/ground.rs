@@ -1,9 +1,11 @@
 //! The shadows of all casters together on the ground.
 
-use super::caster::Cast;
+use std::collections::BTreeSet;
+
+use super::caster::{AnyShadow, Cast};
 use super::fusion::{self, groups};
 use super::{Receiver, Stage};
-use crate::density::{Each, PixelOptions};
+use crate::density::{Each, PixelOptions, method_of};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::hidden::Hidden;
@@ -77,6 +79,24 @@ impl GroundShadows<'_> {
     #[must_use]
     pub fn grid(&self) -> &Grid {
         &self.grid
+    }
+
+    /// The names of what draws them, each once: of methods, and `tilted` and `image` for casters that have one way each, whatever
+    /// the options say.
+    #[must_use]
+    pub fn drawn_by(&self, options: &PixelOptions<'_>) -> BTreeSet<&'static str> {
+        let mut names = BTreeSet::new();
+        for cast in &self.casts {
+            match &cast.shadow {
+                AnyShadow::Level(shadow) => {
+                    let parts = shadow.parts_on(&self.grid, 0.0);
+                    names.extend(parts.map(|part| method_of(part, &self.grid, options).name()));
+                }
+                AnyShadow::Tilted(_) => _ = names.insert("tilted"),
+                AnyShadow::Alpha(_) => _ = names.insert("image"),
+            }
+        }
+        names
     }
 
     /// Hides the pixels under the scene's opaque surfaces but the tilted ones.

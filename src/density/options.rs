@@ -24,7 +24,9 @@ impl<'a> PixelOptions<'a> {
         }
     }
 
-    /// With one method, whatever the plan would choose, or none to leave it the choice.
+    /// With one method, whatever the plan would choose, or none to leave it the choice. Where [`Method::Grid`] or
+    /// [`Method::NinePatch`] cannot draw a shadow, it gives way to [`Method::Direct`]: what [`candidates`](crate::plan::candidates)
+    /// are tells. Tilted casters and images have one way each, whatever the method.
     #[must_use]
     pub fn with_method(mut self, method: impl Into<Option<Method>>) -> Self {
         self.method = method.into();

@@ -1,4 +1,4 @@
-//! `density`: the density of all casters on the ground.
+//! `density`: the density of all casters on the ground, and how long it takes to draw their shadows.
 
 use std::io::Cursor;
 use std::path::Path;
@@ -63,8 +63,9 @@ pub(crate) fn run(
     grey.write_to(&mut png, ImageFormat::Png)
         .map_err(|error| error.to_string())?;
     output::write(picture, &png.into_inner())?;
+    let names: Vec<&str> = shadows.drawn_by(&options).into_iter().collect();
     let line = json!({
-        "method": method.map_or("auto".to_owned(), |method| method.to_string()),
+        "method": if names.is_empty() { "none".to_owned() } else { names.join("+") },
         "pixels": map.densities().len(),
         "median_ns": times[times.len() / 2],
         "max_density": max,

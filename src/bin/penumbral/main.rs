@@ -43,14 +43,15 @@ enum Command {
         #[arg(long, default_value = "1", value_parser = tolerance)]
         tolerance: Tolerance,
     },
-    /// Draw the density of all casters on the ground under the first light as 16-bit grey, white = 1, and time it.
+    /// Draw the density of all casters on the ground under the first light as 16-bit grey, white = 1, and time how long their
+    /// shadows take to be blended onto a picture. Prints the methods that drew.
     Density {
         /// The scene file, JSON.
         scene: PathBuf,
         /// The map: .png.
         #[arg(short, long)]
         output: PathBuf,
-        /// The method: auto, exact or mesh.
+        /// The method: auto, exact, direct, grid, nine-patch or mesh. Where grid and nine-patch cannot draw a shadow, direct does.
         #[arg(long, default_value = "auto", value_parser = method)]
         method: MethodChoice,
         /// The largest error, in levels of 255.
@@ -59,7 +60,7 @@ enum Command {
         /// Leave out what opaque casters cover.
         #[arg(long)]
         opaque: bool,
-        /// Draw so many times and print the median time.
+        /// Blend so many times and print the median time.
         #[arg(long, default_value = "1", value_parser = clap::value_parser!(u32).range(1..=100_000))]
         repeat: u32,
     },
@@ -120,7 +121,7 @@ fn method(text: &str) -> Result<MethodChoice, String> {
     }
     let method = text
         .parse()
-        .map_err(|_| "give auto, exact or mesh".to_owned())?;
+        .map_err(|_| "give auto, exact, direct, grid, nine-patch or mesh".to_owned())?;
     Ok(MethodChoice(Some(method)))
 }
 
