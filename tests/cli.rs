@@ -239,6 +239,17 @@ mod render {
     }
 
     #[test]
+    fn extensions_are_of_any_case() {
+        let folder = Folder::with_scene(CARD);
+        for name in ["OUT.PNG", "out.Svg"] {
+            folder.succeed(&format!("render scene.json -o {name}"));
+        }
+        assert!(folder.text("out.Svg").starts_with("<svg "));
+        let png = fs::read(folder.file("OUT.PNG")).unwrap();
+        assert!(png.starts_with(b"\x89PNG"));
+    }
+
+    #[test]
     fn pictures_show_ground_shadow_and_surface() {
         let folder = Folder::with_scene(card_with("[60, 40]", "[60, 80]"));
         folder.succeed("render scene.json -o out.png");
@@ -721,6 +732,7 @@ mod failures {
             "render scene.json -o out.svg --tolerance",
             "render scene.json -o out.svg --tolerance 0",
             "render scene.json -o out.svg --tolerance=-1",
+            "density scene.json -o out.png --repeat -1",
             "render scene.json -o out.svg --tolerance abc",
             "render scene.json -o out.svg --tolerance NaN",
             "mesh scene.json -o out.json --tolerance 65",
@@ -734,6 +746,40 @@ mod failures {
             assert!(run.stdout.is_empty() && !run.stderr.is_empty());
         }
         assert_eq!(folder.contents(), before);
+    }
+
+    #[test]
+    fn negative_numbers_are_taken_for_numbers() {
+        let folder = Folder::with_scene(CARD);
+        let run = folder.run("mesh scene.json -o out.svg --tolerance -1");
+        assert_eq!(run.status, Some(2));
+        assert!(run.stderr.contains("tolerance is -1"), "{}", run.stderr);
+    }
+
+    #[test]
+    fn a_tolerance_that_nothing_takes_is_refused() {
+        let folder = Folder::with_scene(CARD);
+        assert_all([
+            folder.refuse(
+                "render scene.json -o out.png --tolerance 64",
+                "--tolerance is for an SVG",
+            ),
+            folder.refuse(
+                "density scene.json -o out.png --method exact --tolerance 1",
+                "--tolerance is for other methods than exact",
+            ),
+        ]);
+    }
+
+    #[test]
+    fn images_that_are_no_png_are_refused() {
+        let surface = r#"{"shape": "rrect", "x": 1, "y": 2, "w": 3, "h": 4, "elevation": 8, "image": "image.png"}"#;
+        let folder = Folder::with_scene(card_of(surface));
+        for contents in ["no image", "\u{0}", "GIF89a and so on", ""] {
+            fs::write(folder.file("image.png"), contents).unwrap();
+            let refused = folder.refuse("explain scene.json", "image.png: not a PNG image");
+            assert_all([refused]);
+        }
     }
 
     #[test]

@@ -15,11 +15,15 @@ pub(crate) fn run(
     path: &Path,
     picture: &Path,
     method: Option<Method>,
-    tolerance: Tolerance,
+    tolerance: Option<Tolerance>,
     opaque: bool,
     repeat: u32,
 ) -> Result<(), Failure> {
     extension(picture, &["png"])?;
+    if method == Some(Method::Exact) && tolerance.is_some() {
+        return Err("--tolerance is for other methods than exact: leave it out".to_owned());
+    }
+    let tolerance = tolerance.unwrap_or_default();
     let scene = read_scene(path)?;
     let shadows = scene.ground_shadows().map_err(|e| e.to_string())?;
     let grid = *shadows.grid();

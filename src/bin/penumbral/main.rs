@@ -13,12 +13,12 @@ mod render;
 mod tilt;
 
 use std::fs::File;
-use std::io::Read;
+use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use image::{ImageReader, Limits};
+use image::{ImageFormat, ImageReader, Limits};
 use penumbral::plan::Method;
 use penumbral::{Image, MAX_PIXELS, MAX_SCENE_LENGTH, MeshOptions, Scene, Tolerance};
 
@@ -39,9 +39,9 @@ enum Command {
         /// The picture: .png or .svg.
         #[arg(short, long)]
         output: PathBuf,
-        /// The largest error of shadows in the SVG, in levels of 255.
-        #[arg(long, default_value = "1", value_parser = tolerance)]
-        tolerance: Tolerance,
+        /// The largest error of shadows in an SVG, in levels of 255: 1 if not given. Those in a PNG keep one level.
+        #[arg(long, value_parser = tolerance, allow_negative_numbers = true)]
+        tolerance: Option<Tolerance>,
     },
     /// Draw the density of all casters on the ground under the first light as 16-bit grey, white = 1, and time how long their
     /// shadows take to be blended onto a picture. Prints the methods that drew.
@@ -54,14 +54,14 @@ enum Command {
         /// The method: auto, exact, direct, grid, nine-patch or mesh. Where grid and nine-patch cannot draw a shadow, direct does.
         #[arg(long, default_value = "auto", value_parser = method)]
         method: MethodChoice,
-        /// The largest error, in levels of 255.
-        #[arg(long, default_value = "1", value_parser = tolerance)]
-        tolerance: Tolerance,
+        /// The largest error, in levels of 255: 1 if not given. The method exact takes none.
+        #[arg(long, value_parser = tolerance, allow_negative_numbers = true)]
+        tolerance: Option<Tolerance>,
         /// Leave out what opaque casters cover.
         #[arg(long)]
         opaque: bool,
         /// Blend so many times and print the median time.
-        #[arg(long, default_value = "1", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+        #[arg(long, default_value = "1", value_parser = clap::value_parser!(u32).range(1..=100_000), allow_negative_numbers = true)]
         repeat: u32,
     },
     /// Write the shadow of each surface on the ground as triangles, under each light; those of images have none.
@@ -72,7 +72,7 @@ enum Command {
         #[arg(short, long)]
         output: PathBuf,
         /// The largest error, in levels of 255.
-        #[arg(long, default_value = "1", value_parser = tolerance)]
+        #[arg(long, default_value = "1", value_parser = tolerance, allow_negative_numbers = true)]
         tolerance: Tolerance,
         /// Make them as soon as may be, of more triangles.
         #[arg(long)]
@@ -215,10 +215,13 @@ fn read_scene(path: &Path) -> Result<Scene, Failure> {
 /// Reads an image that a scene names, no larger than a picture may be.
 fn read_image(path: &Path) -> Result<Image, Failure> {
     let describe = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
-    let mut reader = ImageReader::open(path)
-        .map_err(|error| describe(&error))?
+    let file = File::open(path).map_err(|error| describe(&error))?;
+    let mut reader = ImageReader::new(BufReader::new(file))
         .with_guessed_format()
         .map_err(|error| describe(&error))?;
+    if reader.format() != Some(ImageFormat::Png) {
+        return Err(describe(&"not a PNG image: give one"));
+    }
     let mut limits = Limits::default();
     limits.max_alloc = Some(8 * MAX_PIXELS);
     reader.limits(limits);
@@ -230,18 +233,17 @@ fn read_image(path: &Path) -> Result<Image, Failure> {
         .map_err(|error| describe(&error))
 }
 
-/// The extension of an output file, which says what is to be written.
-fn extension<'a>(path: &'a Path, known: &[&str]) -> Result<&'a str, Failure> {
-    let extension = path
-        .extension()
-        .and_then(|extension| extension.to_str())
-        .unwrap_or("");
-    if known.contains(&extension) {
-        return Ok(extension);
-    }
-    Err(format!(
-        "{}: give an output that ends in .{}",
-        path.display(),
-        known.join(" or .")
-    ))
+/// Which of the known extensions an output file has, in whatever case: it says what is to be written.
+fn extension<'a>(path: &Path, known: &[&'a str]) -> Result<&'a str, Failure> {
+    let has = |known: &&&str| {
+        let extension = path.extension();
+        extension.is_some_and(|extension| extension.eq_ignore_ascii_case(known))
+    };
+    known.iter().find(has).copied().ok_or_else(|| {
+        format!(
+            "{}: give an output that ends in .{}",
+            path.display(),
+            known.join(" or .")
+        )
+    })
 }

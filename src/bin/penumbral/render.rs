@@ -7,12 +7,19 @@ use tiny_skia::Pixmap;
 
 use crate::{Failure, extension, output, read_scene};
 
-pub(crate) fn run(path: &Path, picture: &Path, tolerance: Tolerance) -> Result<(), Failure> {
+pub(crate) fn run(
+    path: &Path,
+    picture: &Path,
+    tolerance: Option<Tolerance>,
+) -> Result<(), Failure> {
     let kind = extension(picture, &["png", "svg"])?;
+    if kind == "png" && tolerance.is_some() {
+        return Err("--tolerance is for an SVG, a PNG keeps one level: leave it out".to_owned());
+    }
     let scene = read_scene(path)?;
     let contents = match kind {
         "svg" => scene
-            .to_svg(tolerance)
+            .to_svg(tolerance.unwrap_or_default())
             .map_err(|error| error.to_string())?
             .into_bytes(),
         _ => png(&scene)?,
