@@ -1008,6 +1008,46 @@ mod failures {
         }
     }
 
+    #[cfg(unix)]
+    #[test]
+    fn links_and_permissions_stay() {
+        use std::os::unix::fs::{PermissionsExt, symlink};
+        let folder = Folder::with_scene(CARD);
+        fs::create_dir(folder.file("pictures")).unwrap();
+        for (link, target) in [
+            ("link.svg", "pictures/out.svg"),
+            ("second.svg", "link.svg"),
+            ("round.svg", "round.svg"),
+        ] {
+            symlink(target, folder.file(link)).unwrap();
+        }
+        let is_link = |name| {
+            fs::symlink_metadata(folder.file(name))
+                .unwrap()
+                .is_symlink()
+        };
+        // First there is nothing where the links lead to.
+        for link in ["link.svg", "second.svg"] {
+            folder.succeed(&format!("render scene.json -o {link}"));
+            assert!(is_link("link.svg") && is_link("second.svg"));
+            assert!(!is_link("pictures/out.svg"));
+            assert!(folder.text("pictures/out.svg").starts_with("<svg "));
+            fs::write(folder.file("pictures/out.svg"), "earlier").unwrap();
+            let permissions = fs::Permissions::from_mode(0o640);
+            fs::set_permissions(folder.file("pictures/out.svg"), permissions).unwrap();
+        }
+        folder.succeed("render scene.json -o link.svg");
+        assert!(folder.text("link.svg").starts_with("<svg "));
+        let mode = fs::metadata(folder.file("link.svg")).unwrap().permissions();
+        assert_eq!(mode.mode() & 0o777, 0o640);
+        assert_eq!(fs::read_dir(folder.file("pictures")).unwrap().count(), 1);
+        assert_all([folder.refuse("render scene.json -o round.svg", "round.svg: ")]);
+        // A device takes it as it is, and stays one.
+        symlink("/dev/null", folder.file("null.svg")).unwrap();
+        folder.succeed("render scene.json -o null.svg");
+        assert!(is_link("null.svg") && folder.text("null.svg").is_empty());
+    }
+
     #[test]
     fn who_kills_it_finds_the_old_file_or_the_new_one() {
         let folder = Folder::with_scene(card_with("[60, 40]", "[700, 500]"));

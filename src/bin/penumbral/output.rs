@@ -2,22 +2,51 @@
 
 use std::fs;
 use std::io::{self, ErrorKind, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::Failure;
 
-/// Writes a file by way of another beside it: whoever interrupts this finds the old file or the new one, never half.
+/// Where a path leads: links are followed, even to where nothing is yet.
+fn followed(path: &Path) -> PathBuf {
+    let mut path = path.to_owned();
+    // Systems give up after about so many, where links lead round in a circle.
+    for _ in 0..40 {
+        match (fs::read_link(&path), path.parent()) {
+            (Ok(target), Some(folder)) => path = folder.join(target),
+            _ => break,
+        }
+    }
+    path
+}
+
+/// Writes a file by way of another beside it: whoever interrupts this finds the old file or the new one, never half. A link to it
+/// stays, and so do the old file's permissions.
 pub(crate) fn write(path: &Path, contents: &[u8]) -> Result<(), Failure> {
     let describe = |error: io::Error| format!("{}: {error}", path.display());
-    let name = path
+    let target = followed(path);
+    let earlier = match fs::metadata(&target) {
+        Ok(earlier) => Some(earlier),
+        Err(error) if error.kind() == ErrorKind::NotFound => None,
+        Err(error) => return Err(describe(error)),
+    };
+    if earlier.as_ref().is_some_and(|earlier| !earlier.is_file()) {
+        // Nothing takes the place of a device or a pipe.
+        return fs::write(&target, contents).map_err(describe);
+    }
+    let name = target
         .file_name()
         .ok_or_else(|| format!("{}: give a file", path.display()))?;
     let mut unfinished = name.to_owned();
     unfinished.push(format!(".{}.part", std::process::id()));
-    let unfinished = path.with_file_name(unfinished);
-    let written = fs::write(&unfinished, contents).and_then(|()| fs::rename(&unfinished, path));
+    let unfinished = target.with_file_name(unfinished);
+    let written = fs::write(&unfinished, contents)
+        .and_then(|()| match earlier {
+            Some(earlier) => fs::set_permissions(&unfinished, earlier.permissions()),
+            None => Ok(()),
+        })
+        .and_then(|()| fs::rename(&unfinished, &target));
     if written.is_err() {
         // Nothing more can be done about a leftover than to try.
         let _ = fs::remove_file(&unfinished);
