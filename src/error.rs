@@ -57,7 +57,11 @@ pub enum Error {
     #[error("the drawing was stopped: what is drawn of the picture is not whole")]
     Stopped,
     /// A number is NaN or infinite.
-    #[error("{field} is {}: give a finite number", Shown(*value))]
+    #[error(
+        "{field} is {}: give a finite number{}",
+        Shown(*value),
+        if value.is_infinite() { ", no larger than an f32 holds" } else { "" }
+    )]
     NotFinite {
         /// The field that holds it.
         field: &'static str,

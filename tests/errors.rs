@@ -93,7 +93,7 @@ fn cases() -> Vec<(&'static str, Result<(), Error>, &'static str)> {
     #[rustfmt::skip]
     let cases = vec![
         ("NotFinite", Shape::rect(f32::NAN, 0.0, 1.0, 1.0).map(drop), "x is NaN: give a finite number"),
-        ("NotFinite", Light::new([0.0, 0.0, f32::INFINITY], 1.0).map(drop), "light.z is inf: give a finite number"),
+        ("NotFinite", Light::new([0.0, 0.0, f32::INFINITY], 1.0).map(drop), "light.z is inf: give a finite number, no larger than an f32 holds"),
         ("OutOfRange", Shape::rect(1e9, 0.0, 1.0, 1.0).map(drop), "x is 1e9: give a number from -16777216 to 16777216"),
         ("OutOfRange", Tolerance::levels(65.0).map(drop), "tolerance is 65: give a number from 0.0625 to 64"),
         ("NotPositive", Shape::circle([0.0, 0.0], 0.0).map(drop), "radius is 0: give a number above 0"),

@@ -16,7 +16,7 @@ use self::members::Members;
 use self::optional::some;
 use self::part::Part;
 use super::{Overlap, Scene};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::image::Image;
 use crate::limits::{Limits, at_most};
 use crate::tone::{Blending, Color, Tone};
@@ -177,8 +177,14 @@ impl Scene {
         }
         if let Some(color) = fields.shadow_color.map(part) {
             let value: String = color.read("shadow_color")?;
-            let parsed = value.parse();
-            tone = tone.with_color(parsed.map_err(|error| color.refuse("shadow_color", &error))?);
+            let parsed: Color = value
+                .parse()
+                .map_err(|error| color.refuse("shadow_color", &error))?;
+            if parsed.a < 255 {
+                let (field, alpha) = ("shadow_color", parsed.a);
+                return Err(color.refuse(field, &Error::NotOpaque { field, alpha }));
+            }
+            tone = tone.with_color(parsed);
         }
         if let Some(blending) = fields.blending.map(part) {
             let names = [("srgb", Blending::Srgb), ("linear", Blending::Linear)];
@@ -221,7 +227,6 @@ impl Scene {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::error::Error;
     use crate::shape::Shape;
 
     fn scene(surface: &str) -> Result<Scene> {

@@ -91,6 +91,9 @@ struct EnvironmentFields {
 impl FinishFields {
     /// The finish, its images read by `images`.
     pub(super) fn build(self, images: &mut Images<'_>) -> Outcome<Finish> {
+        if self.shading.is_some() && self.rim.is_none() {
+            return Err("finish.shading is of a rim: give `rim` or leave it out".to_owned());
+        }
         let mut finish = Finish::new();
         if let Some(rim) = self.rim {
             finish = finish.with_rim(rim.build()?);

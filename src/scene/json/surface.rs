@@ -378,6 +378,9 @@ impl StrokeFields {
                 ));
             }
         };
+        if self.miter_limit.is_some() && join != LineJoin::Miter {
+            return Err("stroke.miter_limit is of the join miter: leave it out".to_owned());
+        }
         let stroke = Stroke::new(self.width).and_then(|stroke| match self.miter_limit {
             Some(limit) => stroke.with_miter_limit(limit),
             None => Ok(stroke),
