@@ -166,9 +166,12 @@ impl<'a> Stage<'a> {
             .map(|index| &scene.surfaces()[index])
             .collect();
         let sources = sources.into_iter().map(|(source, strength)| {
-            let reaches = order.iter().map(|surface| match surface.weight() {
-                0.0 => Ok(None),
-                _ => source.reach(surface),
+            let reaches = order.iter().map(|surface| {
+                if surface.casts() {
+                    source.reach(surface)
+                } else {
+                    Ok(None)
+                }
             });
             let reaches: Result<Vec<_>> = reaches.collect();
             Ok((

@@ -69,6 +69,9 @@ impl Shadow {
     /// and outside of them, unless the mesh says that it is not [complete](ShadowMesh::is_complete). With penumbra radius 0
     /// they fill the outline, with chords within 1e-5 of its extent, and the error is that of no penumbra: none.
     ///
+    /// The density is that of points, no average over pixels: where a penumbra is narrower than some 3 pixels a GPU needs several samples
+    /// a pixel for edges that are not jagged.
+    ///
     /// ```
     /// use penumbral::{Light, Shape, Tolerance};
     ///

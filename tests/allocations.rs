@@ -123,7 +123,7 @@ fn a_warm_mesh_of_a_rounded_rectangle_takes_no_memory() {
                     buffers.clear();
                     let tolerance = Tolerance::ONE_LEVEL;
                     let quality = shadow.mesh_into(&mut buffers, tolerance, &mut scratch);
-                    assert!(quality.unwrap().complete);
+                    assert!(quality.unwrap().is_complete());
                 };
                 into();
                 allocation_counter::measure(into).count_total
@@ -149,7 +149,7 @@ fn a_mesh_of_known_corners_takes_no_memory_whatever_its_size() {
             let tolerance = Tolerance::ONE_LEVEL;
             quality = Some(shadow.mesh_into(&mut buffers, tolerance, &mut scratch));
         });
-        assert!(quality.unwrap().unwrap().complete);
+        assert!(quality.unwrap().unwrap().is_complete());
         taken.count_total
     };
     // Cards and pills, which only grow longer; and cards that rise a little.
@@ -174,7 +174,7 @@ fn a_warm_mesh_of_another_outline_takes_no_memory_where_it_stays() {
     let mut into = || {
         buffers.clear();
         let quality = shadow.mesh_into(&mut buffers, Tolerance::ONE_LEVEL, &mut scratch);
-        assert!(quality.unwrap().complete);
+        assert!(quality.unwrap().is_complete());
     };
     into();
     assert_eq!(allocation_counter::measure(into).count_total, 0);
@@ -192,7 +192,7 @@ fn a_warm_mesh_of_halved_squares_takes_no_memory() {
             buffers.clear();
             let options = MeshOptions::new(Tolerance::levels(levels).unwrap()).quick();
             let quality = shadow.mesh_into(&mut buffers, options, &mut scratch);
-            assert!(quality.unwrap().complete);
+            assert!(quality.unwrap().is_complete());
         };
         into(1.0);
         // Not the same meshes again: other tolerances take other triangles.

@@ -131,7 +131,7 @@ fn mesh_all(icons: &[Icon], options: MeshOptions, levels: f64, each: usize) {
             let quality = mesh().unwrap();
             times.push((start.elapsed().as_secs_f64() * 1e6, &icon.name));
             assert!(
-                quality.complete && quality.error_levels <= levels,
+                quality.is_complete() && quality.error_levels <= levels,
                 "{} at {elevation}",
                 icon.name
             );

@@ -47,6 +47,26 @@ fn rect(x: f32, y: f32, w: f32, h: f32) -> Shape {
 }
 
 #[test]
+fn a_scrim_without_shadow_darkens_evenly() {
+    let [width, height] = CANVAS;
+    let scrim = Surface::new(rect(0.0, 0.0, width, height), 8.0)
+        .with_fill(Color::BLACK)
+        .with_opacity(0.32);
+    let reds = |scrim: &Surface| {
+        let mut scene = empty();
+        scene.push(scrim.clone()).unwrap();
+        let picture = drawn(&scene);
+        let reds = picture.pixels().iter().map(|pixel| pixel.red());
+        reds.collect::<BTreeSet<u8>>()
+    };
+    // 255 (1 - 0.32), and a shadow besides.
+    assert_eq!(reds(&scrim.clone().without_shadow()), [173].into());
+    assert!(reds(&scrim).len() > 3 && !scrim.clone().without_shadow().casts());
+    // What is transparent casts none either.
+    assert!(scrim.casts() && !scrim.with_opacity(0.0).casts());
+}
+
+#[test]
 fn abutting_cards_are_one_card_bit_for_bit() {
     let mut split = empty();
     split

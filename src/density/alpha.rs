@@ -143,8 +143,9 @@ impl AlphaShadow {
     fn add(&self, x: f64, step: f64, weight: f64, chords: &Chords, densities: &mut [f64]) {
         let texel = self.texel().x;
         let (x, step) = ((x - self.place.min.x) / texel, step / texel);
+        let sums = self.image.row_sums();
         for chord in &chords.chords {
-            let row = self.image.row_sums().row(chord.row);
+            let row = sums.row(chord.row);
             let (half, weight) = (chord.half / texel, weight * chord.weight * texel);
             for (column, density) in densities.iter_mut().enumerate() {
                 let x = x + column as f64 * step;

@@ -153,8 +153,6 @@ pub enum Incomplete {
 pub struct MeshQuality {
     /// As [`ShadowMesh::error_levels`].
     pub error_levels: f64,
-    /// As [`ShadowMesh::is_complete`].
-    pub complete: bool,
     /// As [`ShadowMesh::incomplete`].
     pub incomplete: Option<Incomplete>,
 }
@@ -163,8 +161,13 @@ impl MeshQuality {
     pub(super) fn new(error_levels: f64, incomplete: Option<Incomplete>) -> Self {
         Self {
             error_levels,
-            complete: incomplete.is_none(),
             incomplete,
         }
+    }
+
+    /// As [`ShadowMesh::is_complete`].
+    #[must_use]
+    pub fn is_complete(&self) -> bool {
+        self.incomplete.is_none()
     }
 }

@@ -59,7 +59,7 @@ impl Scene {
     ///   "light": {"x": 180, "y": 0, "z": 600, "radius": 800}, "key": 0.19, "ambient": 0.039,
     ///   "surfaces": [
     ///     {"shape": "rrect", "x": 16, "y": 80, "w": 328, "h": 120, "radius": 12, "elevation": 4,
-    ///      "opacity": 1, "fill": "#fff", "name": "card"}
+    ///      "opacity": 1, "fill": "#fff", "casts": true, "name": "card"}
     ///   ]
     /// }
     /// ```

@@ -23,6 +23,7 @@ pub struct Surface {
     form: Form,
     opacity: f32,
     fill: Color,
+    casts: bool,
     name: Option<String>,
     #[cfg(feature = "finish")]
     look: Option<Look>,
@@ -58,6 +59,7 @@ impl Surface {
             form: Form::Level,
             opacity: 1.0,
             fill: Color::WHITE,
+            casts: true,
             name: None,
             #[cfg(feature = "finish")]
             look: None,
@@ -102,6 +104,14 @@ impl Surface {
     #[must_use]
     pub fn with_opacity(mut self, opacity: f32) -> Self {
         self.opacity = opacity;
+        self
+    }
+
+    /// The same without a shadow, as of a scrim: what covers all that is below it would darken that twice, and lighten it about the
+    /// edges of the picture, which its shadow ends at.
+    #[must_use]
+    pub fn without_shadow(mut self) -> Self {
+        self.casts = false;
         self
     }
 
@@ -220,6 +230,12 @@ impl Surface {
     #[must_use]
     pub fn weight(&self) -> f32 {
         self.opacity * f32::from(self.fill.a) / 255.0
+    }
+
+    /// Whether it casts a shadow: not one [`without`](Self::without_shadow), nor what is wholly transparent.
+    #[must_use]
+    pub fn casts(&self) -> bool {
+        self.casts && self.weight() > 0.0
     }
 
     /// Whether nothing is seen through it.

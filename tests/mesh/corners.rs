@@ -24,7 +24,7 @@ fn warm(shadow: &Shadow, tolerance: f32, scratch: &mut Scratch) -> MeshBuffers<u
     let quality = shadow
         .mesh_into(&mut buffers, levels(tolerance), scratch)
         .unwrap();
-    assert!(quality.complete && quality.error_levels <= f64::from(tolerance));
+    assert!(quality.is_complete() && quality.error_levels <= f64::from(tolerance));
     buffers
 }
 

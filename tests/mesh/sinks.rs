@@ -14,7 +14,7 @@ fn sinks_take_what_they_have_room_for() {
     let mut buffers = MeshBuffers::new();
     let quality = into(&mut buffers).unwrap();
     assert_eq!(
-        (quality.error_levels, quality.complete),
+        (quality.error_levels, quality.is_complete()),
         (mesh.error_levels(), true)
     );
     // The second one counts on from the first.

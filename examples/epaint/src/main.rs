@@ -68,7 +68,7 @@ fn main() -> Result<()> {
         };
         let quality = shadow.mesh_into(&mut ink, Tolerance::ONE_LEVEL, &mut scratch)?;
         ensure!(
-            quality.complete,
+            quality.is_complete(),
             "a mesh is {} levels off",
             quality.error_levels
         );

@@ -34,7 +34,7 @@ fn main() -> Result<()> {
             );
             let most = quality.error_levels + ROUNDING + SNAP / shadow.radius();
             ensure!(
-                quality.complete && worst <= most,
+                quality.is_complete() && worst <= most,
                 "{worst} levels, above {most}"
             );
         }

@@ -25,7 +25,10 @@ pub(crate) fn run(path: &Path) -> Result<(), Failure> {
                 let _ = write!(text, ", light {number}");
             }
             let _ = writeln!(text);
-            if let Some(pose) = surface.pose() {
+            if !surface.casts() {
+                let _ = writeln!(text, "  no shadow");
+                Ok(())
+            } else if let Some(pose) = surface.pose() {
                 tilted(surface, pose, light, &mut text)
             } else if let Some(image) = surface.as_image() {
                 let [width, height] = image.size();

@@ -22,7 +22,7 @@ pub(crate) fn run(path: &Path, file: &Path, options: MeshOptions) -> Result<(), 
     let bar = output::progress(lights.len() * scene.surfaces().len(), "meshes");
     let mut made = Vec::with_capacity(lights.len() * scene.surfaces().len());
     let surfaces = || scene.surfaces().iter().zip(scene.surface_fields());
-    for (surface, field) in surfaces() {
+    for (surface, field) in surfaces().filter(|(surface, _)| surface.casts()) {
         for (number, light) in lights.iter().enumerate() {
             if let Some(mesh) = mesh(light, surface, options)? {
                 made.push(Made {
@@ -56,7 +56,7 @@ pub(crate) fn run(path: &Path, file: &Path, options: MeshOptions) -> Result<(), 
     };
     output::write(file, text.as_bytes())?;
     for (surface, field) in surfaces() {
-        if surface.as_image().is_some() {
+        if surface.as_image().is_some() && surface.casts() {
             output::complain(&format!(
                 "{field}: the shadow of an image has no triangles: it is left out"
             ));

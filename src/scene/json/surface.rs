@@ -34,6 +34,8 @@ pub(super) struct SurfaceFields {
     #[serde(default, deserialize_with = "some")]
     fill: Option<String>,
     #[serde(default, deserialize_with = "some")]
+    casts: Option<bool>,
+    #[serde(default, deserialize_with = "some")]
     name: Option<String>,
     #[serde(default, deserialize_with = "some")]
     x: Option<f32>,
@@ -152,6 +154,9 @@ impl SurfaceFields {
         if let Some(fill) = self.fill {
             surface = surface.with_fill(fill.parse().map_err(|error| format!("fill {error}"))?);
         }
+        if self.casts == Some(false) {
+            surface = surface.without_shadow();
+        }
         if let Some(name) = self.name {
             surface = surface.with_name(name);
         }
@@ -169,6 +174,7 @@ impl SurfaceFields {
             ("elevation", self.elevation.is_some()),
             ("opacity", self.opacity.is_some()),
             ("fill", self.fill.is_some()),
+            ("casts", self.casts.is_some()),
             ("name", self.name.is_some()),
             ("tilt", self.tilt.is_some()),
             ("corners", self.corners.is_some()),
