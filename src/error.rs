@@ -41,7 +41,6 @@ pub type Result<T, E = Error> = core::result::Result<T, E>;
 /// | [`NotInSvg`](Error::NotInSvg) | `Scene::to_svg` of a scene with linear blending |
 /// | [`NotFinished`](Error::NotFinished) | a tilted surface with a finish (feature `finish`) |
 /// | [`NotClipped`](Error::NotClipped) | `Surface::clipped` of a tilted surface |
-/// | [`Stroke`](Error::Stroke) | a stroke of more vertices than a `u32` counts |
 /// | [`Scene`](Error::Scene) | a scene file that ends early, has an unknown field or any of the above |
 /// | [`Stopped`](Error::Stopped) | a `Renderer::render_while` that is told not to go on |
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -153,12 +152,6 @@ pub enum Error {
     /// A finish on a tilted surface or an image.
     #[error("a tilted surface and an image take no finish: leave it out")]
     NotFinished,
-    /// A stroke that cannot be followed.
-    #[error("the stroke cannot be drawn: {reason}")]
-    Stroke {
-        /// What was wrong with it.
-        reason: String,
-    },
     /// A ground that something would be seen through.
     #[error("{field} has the alpha {alpha} of 255: give an opaque colour")]
     NotOpaque {

@@ -1,26 +1,20 @@
 //! Strokes: a pen's way along a path as a shape.
 
-use core::f64::consts::PI;
+mod pen;
+mod way;
 
-use glam::DVec2;
-use lyon::math::{Point, point};
-use lyon::path::traits::PathBuilder;
-use lyon::tessellation::{
-    BuffersBuilder, LineCap as LyonCap, LineJoin as LyonJoin, StrokeOptions, StrokeTessellator,
-    StrokeVertex, VertexBuffers,
-};
-
+use self::pen::Pen;
 use super::Shape;
 use crate::error::{self, Error, Result};
 use crate::limits::at_most;
 use crate::outline::{Winding, resolve_loops};
-use crate::path::{FillRule, Path, Segment, arc_steps, lines};
+use crate::path::{FillRule, Path, Segment, lines};
 
 /// How far from a curve of a stroke its lines may be, in scene units.
 const FLATNESS: f64 = 5e-4;
 
-/// The least and the most that is over the stroke's extent: strokes are computed in `f32`, and a scene unit may be anything.
-const RELATIVE_FLATNESS: [f64; 2] = [1e-6, 4e-6];
+/// The most that is over the stroke's extent: a scene unit may be anything.
+const RELATIVE_FLATNESS: f64 = 4e-6;
 
 /// A stroke may not have more lines than this before it is united: where a wide one overlaps itself they cross in as many places as the
 /// square of their number.
@@ -100,8 +94,8 @@ impl Stroke {
 }
 
 impl Shape {
-    /// What a pen draws along a path, open contours as well as closed ones. Curves become lines within 0.0005 scene units, but no
-    /// finer than a millionth of the larger side of the path's box and the width together, and no coarser than four of them.
+    /// What a pen draws along a path, open contours as well as closed ones, as SVG has it. Curves become lines within 0.0005 scene units,
+    /// and no coarser than four millionths of the larger side of the path's box and the width together.
     ///
     /// # Errors
     /// A path without segments or that draws nothing, a number that is not finite or passes
@@ -117,123 +111,33 @@ impl Shape {
     /// # Ok::<(), penumbral::Error>(())
     /// ```
     pub fn stroke(path: &Path, stroke: &Stroke) -> Result<Self> {
-        path.validate()?;
-        let origin = path.contours[0].start;
-        let extent = Self {
-            contours: path.contours.clone(),
-            cover: super::Cover::Rule(FillRule::NonZero),
-        }
-        .extent();
-        let width = f64::from(stroke.width);
-        let [least, most] = RELATIVE_FLATNESS.map(|share| share * (extent + width));
-        let flatness = FLATNESS.clamp(least, most);
-        let is_round = stroke.cap == LineCap::Round || stroke.join == LineJoin::Round;
-        let at_end = if is_round {
-            arc_steps(width / 2.0, PI, flatness) as usize
-        } else {
-            1
-        };
-        let ends: usize = path.contours.iter().map(|c| c.segments.len() + 1).sum();
-        let along = lines(&path.contours, flatness);
-        at_most(
-            "lines of a stroke",
-            along.saturating_add(ends.saturating_mul(at_end)),
-            MAX_LINES,
-        )?;
-        let options = StrokeOptions::tolerance(flatness as f32)
-            .with_line_width(stroke.width)
-            .with_line_cap(stroke.cap.into())
-            .with_line_join(stroke.join.into())
-            .with_miter_limit(stroke.miter_limit);
-        let mut buffers: VertexBuffers<Point, u32> = VertexBuffers::new();
-        let mut output = BuffersBuilder::new(&mut buffers, |vertex: StrokeVertex<'_, '_>| {
-            vertex.position()
-        });
-        let mut tessellator = StrokeTessellator::new();
-        let mut builder = tessellator.builder(&options, &mut output);
-        trace(path, origin, flatness, &mut builder);
-        builder.build().map_err(|error| Error::Stroke {
-            reason: error.to_string(),
-        })?;
-        let corner = |index: u32| {
-            let p = buffers.vertices[index as usize];
-            origin + DVec2::new(f64::from(p.x), f64::from(p.y))
-        };
-        let triangles: Vec<Vec<DVec2>> = buffers
-            .indices
-            .chunks_exact(3)
-            .map(|triangle| {
-                let [a, b, c] = [
-                    corner(triangle[0]),
-                    corner(triangle[1]),
-                    corner(triangle[2]),
-                ];
-                if (b - a).perp_dot(c - a) < 0.0 {
-                    vec![a, c, b]
-                } else {
-                    vec![a, b, c]
-                }
-            })
-            .collect();
-        let loops = resolve_loops(&triangles, Winding::Rule(FillRule::NonZero), false);
-        Self::of_loops(&loops)?.ok_or(Error::EmptyPath { field: "stroke" })
-    }
-}
-
-/// Walks a path, seen from `origin`.
-fn trace(path: &Path, origin: DVec2, flatness: f64, builder: &mut impl PathBuilder) {
-    let at = |p: DVec2| {
-        let p = p - origin;
-        point(p.x as f32, p.y as f32)
-    };
-    for contour in &path.contours {
-        if contour.segments.is_empty() {
-            continue;
-        }
-        builder.begin(at(contour.start), &[]);
-        let mut from = contour.start;
-        for segment in &contour.segments {
-            match *segment {
-                Segment::Line(to) => {
-                    builder.line_to(at(to), &[]);
-                }
-                Segment::Quad(a, to) => {
-                    builder.quadratic_bezier_to(at(a), at(to), &[]);
-                }
-                Segment::Cubic(a, b, to) => {
-                    builder.cubic_bezier_to(at(a), at(b), at(to), &[]);
-                }
-                Segment::Arc(_) => {
-                    let mut points = Vec::new();
-                    segment.flatten(from, flatness, &mut points);
-                    for to in points {
-                        builder.line_to(at(to), &[]);
-                    }
-                }
+        let mut path = path.clone();
+        for contour in &mut path.contours {
+            // As in SVG, a contour that is closed at once is a dot.
+            if contour.closed && contour.segments.is_empty() {
+                contour.segments.push(Segment::Line(contour.start));
             }
-            from = segment.end();
         }
-        builder.end(contour.closed);
-    }
-}
-
-impl From<LineCap> for LyonCap {
-    fn from(cap: LineCap) -> Self {
-        match cap {
-            LineCap::Butt => Self::Butt,
-            LineCap::Square => Self::Square,
-            LineCap::Round => Self::Round,
+        path.validate()?;
+        let filled = Self {
+            contours: path.contours,
+            cover: super::Cover::Rule(FillRule::NonZero),
+        };
+        let extent = filled.extent() + f64::from(stroke.width);
+        let flatness = FLATNESS.min(RELATIVE_FLATNESS * extent);
+        let mut count = lines(&filled.contours, flatness);
+        at_most("lines of a stroke", count, MAX_LINES)?;
+        let pen = Pen::new(stroke, flatness);
+        let mut sides = Vec::new();
+        for contour in &filled.contours {
+            if contour.segments.is_empty() {
+                continue;
+            }
+            let (way, closed) = way::way(contour, &pen);
+            sides.append(&mut pen.along(&way, closed, &mut count)?);
         }
-    }
-}
-
-impl From<LineJoin> for LyonJoin {
-    fn from(join: LineJoin) -> Self {
-        match join {
-            LineJoin::Miter => Self::Miter,
-            LineJoin::Round => Self::Round,
-            LineJoin::Bevel => Self::Bevel,
-        }
+        let loops = resolve_loops(&sides, Winding::Positive, false);
+        Self::of_loops(&loops)?.ok_or(Error::EmptyPath { field: "stroke" })
     }
 }
 
@@ -241,36 +145,46 @@ impl From<LineJoin> for LyonJoin {
 mod tests {
     use core::f64::consts::PI;
 
+    use glam::DVec2;
+
     use super::*;
     use crate::outline::Outline;
 
-    fn area(path: &Path, stroke: &Stroke) -> f64 {
-        Outline::of_flattened(&Shape::stroke(path, stroke).unwrap(), 1e-4).area()
+    const JOINS: [LineJoin; 3] = [LineJoin::Miter, LineJoin::Round, LineJoin::Bevel];
+    const CAPS: [LineCap; 3] = [LineCap::Butt, LineCap::Square, LineCap::Round];
+
+    fn drawn(data: &str, stroke: &Stroke) -> Shape {
+        Shape::stroke(&Path::from_svg(data).unwrap(), stroke).unwrap()
+    }
+
+    fn area(shape: &Shape) -> f64 {
+        Outline::of_flattened(shape, 1e-4).area()
     }
 
     #[test]
     fn areas_of_strokes_are_those_of_pens() {
-        let mut line = Path::new();
-        line.move_to([1000.0, 20.0]).line_to([1030.0, 60.0]);
         let pen = Stroke::new(4.0).unwrap();
-        assert!((area(&line, &pen) - 200.0).abs() < 1e-2);
-        assert!((area(&line, &pen.with_cap(LineCap::Square)) - 216.0).abs() < 1e-2);
-        let round = 200.0 + 4.0 * PI;
-        assert!((area(&line, &pen.with_cap(LineCap::Round)) - round).abs() < 2e-2);
+        let of = |data, pen: &Stroke| area(&drawn(data, pen));
+        let line = "M1000 20L1030 60";
+        assert!((of(line, &pen) - 200.0).abs() < 1e-9);
+        assert!((of(line, &pen.with_cap(LineCap::Square)) - 216.0).abs() < 1e-9);
+        let round = of(line, &pen.with_cap(LineCap::Round)) - (200.0 + 4.0 * PI);
+        assert!((0.0..1e-2).contains(&round), "{round}");
 
         // An open corner and a closed one: the second has two corners more and one side.
-        let mut corner = Path::new();
-        corner
-            .move_to([0.0, 0.0])
-            .line_to([40.0, 0.0])
-            .line_to([40.0, 30.0]);
-        assert!((area(&corner, &pen) - (4.0 * 70.0)).abs() < 1e-2);
-        corner.close();
+        assert!((of("M0 0H40V30", &pen) - 4.0 * 70.0).abs() < 1e-9);
         // A mitred ring about the triangle 40, 30, 50 is its length times the width and the corners' points less their dents.
-        let grown = area(&corner, &pen);
         let (inside, semi) = (600.0, 60.0);
         let inset = |d: f64| inside * (1.0 - d * semi / inside).powi(2);
-        assert!((grown - (inset(-2.0) - inset(2.0))).abs() < 1e-1, "{grown}");
+        let grown = of("M0 0H40V30Z", &pen) - (inset(-2.0) - inset(2.0));
+        assert!(grown.abs() < 1e-9, "{grown}");
+
+        // A ring of curves has no corners, whatever the joins.
+        for join in JOINS {
+            let ring = "M0 50A50 50 0 0 1 50 0A50 50 0 1 1 0 50Z";
+            let off = of(ring, &pen.with_join(join)) - 4.0 * 100.0 * PI;
+            assert!(off.abs() < 0.1, "{join:?}: {off}");
+        }
     }
 
     #[test]
@@ -284,6 +198,61 @@ mod tests {
             let area = Outline::of_flattened(&shape, flatness).area() / f64::from(unit).powi(2);
             let error = area - (20.0 + 4.0 * PI);
             assert!(error.abs() < 1e-3, "a unit of {unit}: {error}");
+        }
+    }
+
+    #[test]
+    fn mitres_are_as_long_as_svg_says() {
+        // 1 / sin(angle / 2) is 4 at 28.96 degrees.
+        for (angle, is_bevel) in [(28.0_f64, true), (29.0, false)] {
+            let (sine, cosine) = (angle.to_radians() / 2.0).sin_cos();
+            let (x, y) = (100.0 * cosine, 100.0 * sine);
+            let corner = drawn(
+                &format!("M{x} {y}L0 0L{x} -{y}"),
+                &Stroke::new(4.0).unwrap(),
+            );
+            let (min, _) = corner.hull().unwrap();
+            let tip = if is_bevel { 2.0 * sine } else { 2.0 / sine };
+            assert!((min.x + tip).abs() < 1e-6, "{angle}: {}", min.x);
+        }
+    }
+
+    #[test]
+    fn curves_end_across_where_they_head() {
+        let of = |data, stroke| drawn(data, &stroke).hull().unwrap();
+        let pen = Stroke::new(4.0).unwrap();
+        let (min, max) = of("M0 0Q10 0 10 10", pen);
+        let off = (min - DVec2::new(0.0, -2.0)).abs() + (max - DVec2::new(12.0, 10.0)).abs();
+        assert!(off.max_element() < 1e-9, "{min} {max}");
+        // The same where they meet in a right corner.
+        let (_, max) = of("M0 0Q10 0 10 10Q10 20 0 20M10 10Q20 10 30 20", pen);
+        assert!((max.y - 22.0).abs() < 1e-3);
+        let (min, _) = of("M10 0C10 5 5 10 0 10C-5 10-10 15-10 20", pen);
+        assert!((min.x + 12.0).abs() < 1e-9);
+        let (min, max) = of(
+            "M20 0Q10 0 0 10Q10 20 20 20",
+            pen.with_miter_limit(2.0).unwrap(),
+        );
+        assert!((min.x + 2.0 * 2.0_f64.sqrt()).abs() < 1e-9, "{min} {max}");
+    }
+
+    #[test]
+    fn what_has_no_length_is_a_dot() {
+        let pen = Stroke::new(4.0).unwrap();
+        for dot in [
+            "M5 5h0",
+            "M5 5Z",
+            "M5 5L5 5Z",
+            "M5 5C5 5 5 5 5 5",
+            "M0 0M5 5Z",
+        ] {
+            assert_eq!(
+                drawn(dot, &pen.with_cap(LineCap::Square)).hull(),
+                Some((DVec2::splat(3.0), DVec2::splat(7.0)))
+            );
+            let round = area(&drawn(dot, &pen.with_cap(LineCap::Round)));
+            assert!((round - 4.0 * PI).abs() < 1e-2);
+            assert!(Shape::stroke(&Path::from_svg(dot).unwrap(), &pen).is_err());
         }
     }
 
@@ -309,5 +278,209 @@ mod tests {
         assert!(Shape::stroke(&dot, &Stroke::new(1.0).unwrap()).is_err());
         assert!(Stroke::new(0.0).is_err());
         assert!(Stroke::new(1.0).unwrap().with_miter_limit(0.5).is_err());
+    }
+
+    /// Numbers from 0 to 1.
+    fn random(seed: u64) -> impl FnMut() -> f64 {
+        let mut state = seed;
+        move || {
+            state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+            let mut z = state;
+            z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+            ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+        }
+    }
+
+    fn covers(shape: &Shape, at: DVec2) -> bool {
+        let mut winding = 0;
+        for contour in &shape.contours {
+            let mut from = contour.start;
+            for to in contour
+                .segments
+                .iter()
+                .map(Segment::end)
+                .chain([contour.start])
+            {
+                let left = (to - from).perp_dot(at - from) > 0.0;
+                match (from.y <= at.y, to.y <= at.y) {
+                    (true, false) if left => winding += 1,
+                    (false, true) if !left => winding -= 1,
+                    _ => {}
+                }
+                from = to;
+            }
+        }
+        winding != 0
+    }
+
+    /// How far inside of a convex polygon a point is.
+    fn inside(polygon: &[DVec2], at: DVec2) -> f64 {
+        let next = polygon.iter().cycle().skip(1);
+        let sides: Vec<_> = polygon.iter().zip(next).map(|(&a, &b)| (a, b)).collect();
+        let area: f64 = sides.iter().map(|(a, b)| a.perp_dot(*b)).sum();
+        if area.abs() < 1e-9 {
+            return f64::NEG_INFINITY;
+        }
+        let of_side =
+            |(a, b): &(DVec2, DVec2)| area.signum() * (b - a).normalize().perp_dot(at - a);
+        sides.iter().map(of_side).fold(f64::INFINITY, f64::min)
+    }
+
+    /// How far inside of what the pen covers along lines a point is, by what SVG says of each line, corner and end.
+    fn pen(points: &[DVec2], closed: bool, stroke: &Stroke, at: DVec2) -> f64 {
+        let half = f64::from(stroke.width) / 2.0;
+        let count = points.len();
+        let mut most = f64::NEG_INFINITY;
+        let lines = if closed { count } else { count - 1 };
+        let along = |line: usize| (points[(line + 1) % count] - points[line]).normalize();
+        for line in 0..lines {
+            let along = half * along(line);
+            let side = along.perp();
+            let more = |is_end: bool| {
+                let is_square = is_end && !closed && stroke.cap == LineCap::Square;
+                f64::from(u8::from(is_square)) * along
+            };
+            let from = points[line] - more(line == 0);
+            let to = points[(line + 1) % count] + more(line + 1 == lines);
+            most = most.max(inside(
+                &[from + side, to + side, to - side, from - side],
+                at,
+            ));
+        }
+        let circle = |index: usize| half - points[index].distance(at);
+        if !closed && stroke.cap == LineCap::Round {
+            // Half a circle each.
+            let ends = [(0, -along(0)), (count - 1, along(lines - 1))];
+            for (end, out) in ends {
+                most = most.max(circle(end).min(out.dot(at - points[end])));
+            }
+        }
+        let corners = points[..lines]
+            .iter()
+            .enumerate()
+            .skip(usize::from(!closed));
+        for (line, &center) in corners {
+            let [before, after] = [along((line + count - 1) % count), along(line)];
+            let side = -half * before.perp_dot(after).signum();
+            let [a, b] = [before, after].map(|along| center + side * along.perp());
+            let from = at - center;
+            most = most.max(match stroke.join {
+                LineJoin::Round => circle(line).min(before.dot(from)).min(-after.dot(from)),
+                _ => inside(&[center, a, b], at),
+            });
+            let sine = ((1.0 + before.dot(after)) / 2.0).sqrt();
+            if stroke.join == LineJoin::Miter && 1.0 <= f64::from(stroke.miter_limit) * sine {
+                let tip = center + (a.midpoint(b) - center) / (sine * sine);
+                most = most.max(inside(&[center, a, tip, b], at));
+            }
+        }
+        most
+    }
+
+    #[test]
+    fn strokes_cover_what_pens_do() {
+        for case in 0..1000_u32 {
+            let mut random = random(u64::from(case));
+            let mut pick = |count: usize| (random() * count as f64) as usize;
+            let count = 2 + pick(5);
+            let closed = count > 2 && pick(2) == 0;
+            let (is_short, is_whole) = (pick(3) == 0, pick(2) == 0);
+            let width = [1.0, 2.0, 4.0, 7.0, 12.0][pick(5)];
+            let stroke = Stroke::new(width).unwrap();
+            let stroke = stroke.with_cap(CAPS[pick(3)]).with_join(JOINS[pick(3)]);
+            let limit = [1.0, 1.5, 4.0, 10.0][pick(4)];
+            let stroke = stroke.with_miter_limit(limit).unwrap();
+            let mut points: Vec<DVec2> = Vec::new();
+            while points.len() < count {
+                let free = DVec2::new(random(), random());
+                let next = match points.last() {
+                    Some(last) if is_short => last + 8.0 * free - 4.0,
+                    _ => 40.0 * free,
+                };
+                let next = if is_whole { next.round() } else { next };
+                if points.last().is_none_or(|last| last.distance(next) > 0.01)
+                    && points
+                        .first()
+                        .is_none_or(|first| first.distance(next) > 0.01)
+                {
+                    points.push(next);
+                }
+            }
+            let mut path = Path::new();
+            path.begin(points[0]);
+            for &to in &points[1..] {
+                path.push(Segment::Line(to));
+            }
+            if closed {
+                path.close();
+            }
+            let shape = Shape::stroke(&path, &stroke).unwrap();
+            let flatness = if stroke.join == LineJoin::Round || stroke.cap == LineCap::Round {
+                FLATNESS
+            } else {
+                1e-6
+            };
+            for sample in 0..200 {
+                let near = points[sample % count]
+                    + 2.0 * f64::from(width) * (DVec2::new(random(), random()) - 0.5);
+                let far = 70.0 * DVec2::new(random(), random()) - 15.0;
+                for at in [near, far] {
+                    let depth = pen(&points, closed, &stroke, at);
+                    assert!(
+                        depth.abs() < flatness || covers(&shape, at) == (depth > 0.0),
+                        "case {case}: {points:?}, {closed}, {stroke:?}: {depth} at {at}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn curves_are_covered_as_far_as_the_pen_reaches() {
+        for case in 0..24_u32 {
+            let mut random = random(u64::from(case));
+            let mut point = || 40.0 * DVec2::new(random(), random());
+            let mut path = Path::new();
+            path.begin(point());
+            path.push(Segment::Cubic(point(), point(), point()));
+            path.push(Segment::Quad(point(), point()));
+            path.arc(
+                DVec2::splat(9.0),
+                0.0,
+                case % 2 == 0,
+                case % 3 == 0,
+                point(),
+            );
+            if case % 5 == 0 {
+                path.close();
+            }
+            let mut points = path.contours[0].flatten(1e-4);
+            points.extend(path.contours[0].closed.then(|| points[0]));
+            let width = [1.0, 2.0, 8.0, 30.0][case as usize % 4];
+            let (half, close) = (f64::from(width) / 2.0, 2.0 * FLATNESS);
+            let stroke = Stroke::new(width).unwrap().with_join(LineJoin::Round);
+            let stroke = stroke.with_cap(LineCap::Round);
+            let shape = Shape::stroke(&path, &stroke).unwrap();
+            for _ in 0..100 {
+                let index = (random() * (points.len() - 1) as f64) as usize;
+                let [from, to] = [points[index], points[index + 1]];
+                // Beside the curve all is covered, and far from it nothing.
+                let aside = (2.0 * random() - 1.0) * (half - close);
+                let beside = from.midpoint(to) + aside * (to - from).normalize().perp();
+                assert!(covers(&shape, beside), "case {case}: {beside} of {path:?}");
+                let at = from + 4.0 * half * (DVec2::new(random(), random()) - 0.5);
+                let distance = points.windows(2).map(|line| {
+                    let along = line[1] - line[0];
+                    let share = (at - line[0]).dot(along) / along.length_squared();
+                    at.distance(line[0] + share.clamp(0.0, 1.0) * along)
+                });
+                let nearest = distance.fold(f64::INFINITY, f64::min);
+                assert!(
+                    nearest < half + close || !covers(&shape, at),
+                    "case {case}: {at}, {nearest} from {path:?}"
+                );
+            }
+        }
     }
 }
