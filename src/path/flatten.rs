@@ -134,6 +134,7 @@ mod tests {
     use super::*;
     use crate::path::Path;
 
+    #[cfg(feature = "svg-path")]
     #[test]
     fn there_are_no_more_lines_than_are_told() {
         let curves = [

@@ -166,9 +166,9 @@ impl Pen {
         let back = self.half * turn.across.abs() / (2.0 * turn.cos_squared);
         let (meeting, back) = match (before.is_turn(), after.is_turn()) {
             (false, false) => (tip, back),
-            (true, false) => (corners[0], 2.0 * back),
-            (false, true) => (corners[1], 2.0 * back),
-            (true, true) => (tip, f64::INFINITY),
+            (true, false) if after.bends => (corners[0], 2.0 * back),
+            (false, true) if after.bends => (corners[1], 2.0 * back),
+            _ => (tip, f64::INFINITY),
         };
         if back < before.room().min(after.room()) && SHARPEST * turn.cos_squared >= 1.0 {
             inner.push(at - meeting);
