@@ -141,7 +141,8 @@ impl Shape {
     }
 }
 
-#[cfg(all(test, feature = "svg-path"))]
+#[cfg(test)]
+#[cfg(feature = "svg-path")]
 mod tests {
     use core::f64::consts::PI;
 
