@@ -88,7 +88,7 @@ impl Shadow {
 
     /// The mesh, with the corners that a scratch keeps.
     fn mesh_with(&self, options: &MeshOptions, scratch: &mut Scratch) -> ShadowMesh {
-        if self.is_apart() {
+        if !self.apart().is_empty() {
             return self.in_parts(options, scratch);
         }
         let mut buffers = MeshBuffers::new();
@@ -102,7 +102,7 @@ impl Shadow {
     fn in_parts(&self, options: &MeshOptions, scratch: &mut Scratch) -> ShadowMesh {
         let mut all = ShadowMesh::empty();
         let mut options = *options;
-        for part in self.parts(1.0) {
+        for part in self.apart() {
             let mesh = part.mesh_with(&options, scratch);
             options.max_vertices = options.max_vertices.saturating_sub(mesh.vertices.len());
             all.append(mesh);
@@ -126,7 +126,7 @@ impl Shadow {
         scratch: &mut Scratch,
     ) -> Result<MeshQuality> {
         let options = options.into();
-        let is_apart = self.is_apart();
+        let is_apart = !self.apart().is_empty();
         if !is_apart && let Some(quality) = self.patterned(&options, scratch, sink)? {
             return Ok(quality);
         }

@@ -262,6 +262,10 @@ mod tests {
         assert_eq!(blended([i64::MIN; 2], [-1; 2]), Ok(true));
         assert_eq!(blended([i64::MIN; 2], [i64::MIN + 1000; 2]), Ok(false));
         assert_eq!(blended([i64::MAX - 1000; 2], [i64::MAX; 2]), Ok(false));
+        // The same beside the grid.
+        let right = blended([i64::MAX - 1000, -60], [i64::MAX, 940]);
+        let left = blended([i64::MIN, -60], [i64::MIN + 1000, 940]);
+        assert_eq!((left, right), (Ok(false), Ok(false)));
     }
 
     /// How far a mask is from the exact densities besides its rounding, in levels.

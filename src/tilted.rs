@@ -121,18 +121,26 @@ impl TiltedShadow {
                 heights.end - p.z
             })
         };
-        let Some((min, max)) = shape.hull() else {
+        let corners = shape.hull().map_or_else(Vec::new, |(min, max)| {
+            place(vec![
+                min,
+                DVec2::new(max.x, min.y),
+                max,
+                DVec2::new(min.x, max.y),
+            ])
+        });
+        if corners.is_empty() {
+            // Nothing of its box is between receiver and light.
             return Self {
                 loops: Vec::new(),
                 plane,
             };
-        };
-        let corners = vec![min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)];
-        let corners = place(corners).into_iter().map(&circle).map(Circle::real);
+        }
         let flatness = corners
-            .map(|corner| flatness(&corner, &plane))
+            .into_iter()
+            .map(|corner| flatness(&circle(corner).real(), &plane))
             .fold(f64::INFINITY, f64::min)
-            .max(FINEST * (max - min).max_element());
+            .max(FINEST * shape.extent());
         let outline = Outline::of_shape(shape, flatness);
         let polygons = outline.polygons(flatness).into_iter().map(place);
         // What lies on its receiver hides none of it, as no level caster does, but for what rounding lifts.
@@ -180,8 +188,9 @@ impl TiltedShadow {
         around(boxes)
     }
 
-    /// The density at a point (x, y) of the receiver, 0 to 1, in closed form; lines in place of the caster's curves take 1/50 of
-    /// a level of it, or more where they are a millionth of the caster's extent from them: that is as fine as they are. A point that is not finite has density 0.
+    /// The density at a point (x, y) of the receiver, 0 to 1, in closed form. Lines in place of the caster's curves take
+    /// 1/50 of a level of it, or what a millionth of the caster's extent makes where that is more. A point that is not finite has
+    /// density 0.
     #[must_use]
     pub fn density_at(&self, point: [f32; 2]) -> f64 {
         let point = DVec2::new(f64::from(point[0]), f64::from(point[1]));

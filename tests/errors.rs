@@ -47,6 +47,18 @@ fn drawn(length: usize, hidden: Option<Grid>) -> Result<(), Error> {
     shadow.fill_a8(&grid(), &mut vec![0; length], &options, &mut Scratch::new())
 }
 
+#[test]
+fn what_is_refused_leaves_the_buffer_as_it_was() {
+    let hidden = Hidden::new(&Grid::new([1.0, 0.0], [10, 10], 1.0).unwrap());
+    let options = PixelOptions::default().with_hidden(&hidden);
+    let shadow = light().cast(&card(), 8.0, 0.0).unwrap();
+    let (mut mask, mut densities, mut scratch) = ([7; 100], [0.7; 100], Scratch::new());
+    let refused = shadow.fill_a8(&grid(), &mut mask, &options, &mut scratch);
+    assert!(refused.is_err() && mask == [7; 100]);
+    let refused = shadow.fill_f32(&grid(), &mut densities, &options, &mut scratch);
+    assert!(refused.is_err() && densities == [0.7; 100]);
+}
+
 /// Does something with pixels hidden on a grid of 10 x 10.
 fn hiding(act: impl Fn(&PixelOptions<'_>) -> Result<(), Error>) -> Result<(), Error> {
     let hidden = Hidden::new(&grid());

@@ -147,6 +147,17 @@ const OFF_AT_VERTICES: f64 = 0.15;
 /// Besides, chords of a bevel and a cosine: a quarter round is upright at the outline, and its first chord farther off.
 const OFF_IN_FACES: f64 = 0.15;
 
+/// Lines are no finer than a shape of that size needs.
+#[test]
+fn rims_next_to_nothing_wide_have_no_more_vertices() {
+    let shape = Shape::ellipse([80.0, 60.0], [50.0, 30.0]).unwrap();
+    let count = |width: f32| {
+        let rim = Rim::new(width, width, RimProfile::Bevel).unwrap();
+        RimMesh::new(&shape, &rim).map(|mesh| mesh.vertices().len())
+    };
+    assert_eq!(count(1e-20), count(1e-12));
+}
+
 #[test]
 fn meshes_are_the_surface_on_any_outline() {
     for (name, shape) in outlines() {

@@ -205,22 +205,11 @@ impl Refinement {
             return;
         };
         let corners = key.map(FixedVertexHandle::from_index);
-        let is_face = |a: usize, b: usize| {
-            let edge = self
-                .triangles
-                .get_edge_from_neighbors(corners[a], corners[b])?;
-            let opposite = edge.next().to().fix();
-            Some(opposite == corners[3 - a - b])
-        };
-        let untouched = is_face(0, 1) == Some(true);
+        let untouched = self.is_face(corners);
         if !untouched && self.error_at(assessment.worst) <= limit {
             return;
         }
-        let place = |handle| {
-            let position = self.triangles.vertex(handle).position();
-            DVec2::new(position.x, position.y)
-        };
-        let is_near = |handle| (place(handle) - assessment.worst).length() < nearest;
+        let is_near = |handle| (self.place(handle) - assessment.worst).length() < nearest;
         match self.constraint_near(assessment.worst, beside) {
             Some((from, to, edge)) => {
                 // A vertex beside a constraint by a rounding error would leave a triangle of no area: the constraint is
@@ -230,7 +219,8 @@ impl Refinement {
                 if ring == Some(0) || ring == Some(last) || is_near(from) || is_near(to) {
                     return;
                 }
-                let (start, way) = (place(from), place(to) - place(from));
+                let start = self.place(from);
+                let way = self.place(to) - start;
                 let share = (assessment.worst - start).dot(way) / way.length_squared();
                 self.triangles.remove_constraint_edge(edge);
                 if let Some(vertex) = self.insert(start + way * share, ring) {
@@ -248,21 +238,26 @@ impl Refinement {
     /// Adds a vertex in the middle of a triangle, if it is still one and large enough.
     fn split(&mut self, key: [usize; 3]) {
         let corners = key.map(FixedVertexHandle::from_index);
-        let edge = self
-            .triangles
-            .get_edge_from_neighbors(corners[0], corners[1]);
-        if edge.is_none_or(|edge| edge.next().to().fix() != corners[2]) {
+        if !self.is_face(corners) {
             return;
         }
-        let at = corners.map(|corner| {
-            let position = self.triangles.vertex(corner).position();
-            DVec2::new(position.x, position.y)
-        });
+        let at = corners.map(|corner| self.place(corner));
         let middle = at.iter().sum::<DVec2>() / 3.0;
         let least = LARGE * self.measure.radius();
         if at.iter().all(|corner| (*corner - middle).length() >= least) {
             self.insert(middle, None);
         }
+    }
+
+    fn place(&self, vertex: FixedVertexHandle) -> DVec2 {
+        let position = self.triangles.vertex(vertex).position();
+        DVec2::new(position.x, position.y)
+    }
+
+    /// Whether three vertices are one of the triangles, in their order.
+    fn is_face(&self, [a, b, c]: [FixedVertexHandle; 3]) -> bool {
+        let edge = self.triangles.get_edge_from_neighbors(a, b);
+        edge.is_some_and(|edge| edge.next().to().fix() == c)
     }
 
     /// The constraint that passes a point within `distance`, if one does.

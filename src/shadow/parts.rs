@@ -110,9 +110,9 @@ impl Shadow {
         };
     }
 
-    /// Whether it has [`Self::parts`] that do not meet.
-    pub(crate) fn is_apart(&self) -> bool {
-        !self.parts.is_empty()
+    /// Its parts that do not meet, or none where it is one.
+    pub(crate) fn apart(&self) -> &[Self] {
+        &self.parts
     }
 
     /// The shadows that this one is drawn as on pixels of which there are so many a scene unit.
