@@ -9,11 +9,14 @@ mod common;
 
 use common::{Case, by, case, densities};
 use penumbral::plan::Method;
-use penumbral::{Color, Grid, NinePatch, Paint, PixelOptions, Renderer, Scene, Scratch, Tolerance};
+use penumbral::{
+    Color, Grid, Light, LineCap, LineJoin, NinePatch, Paint, Path, PixelOptions, Pose, Renderer,
+    Scene, Scratch, Shape, Stroke, Tolerance,
+};
 use tiny_skia::Pixmap;
 
 /// The hash of each group.
-const GOLDEN: [(&str, u64); 11] = [
+const GOLDEN: [(&str, u64); 13] = [
     ("exact", 0x7184_6738_19c9_44ea),
     ("auto", 0x51e5_5570_97e2_605e),
     ("direct", 0xf5a5_c2e2_9161_7ef1),
@@ -25,6 +28,8 @@ const GOLDEN: [(&str, u64); 11] = [
     ("meshes", 0x7915_6a94_1190_61fc),
     ("pictures", 0x71b5_3d43_220c_f1ca),
     ("svg", 0x1199_f98b_0bae_e15e),
+    ("strokes", 0x6e80_83d9_399e_4f4d),
+    ("tilted", 0x2ea0_6559_12c2_56b8),
 ];
 
 /// FNV-1a of 64 bits (Fowler, Noll & Vo 1991).
@@ -121,6 +126,59 @@ fn meshes() -> Hash {
     hash
 }
 
+/// Round ends and corners of strokes, and curves of tilted casters, go by trigonometry.
+fn strokes() -> Hash {
+    let (mut scratch, mut hash) = (Scratch::new(), Hash::new());
+    let path = "M10 20C30 0 40 50 55 25L62 40Q70 10 50 8A9 6 20 1 0 30 44";
+    let path = Path::from_svg(path).unwrap();
+    let pen = Stroke::new(3.0).unwrap();
+    let pens = [
+        pen,
+        pen.with_join(LineJoin::Round).with_cap(LineCap::Round),
+        pen.with_join(LineJoin::Bevel).with_cap(LineCap::Square),
+    ];
+    let grid = Grid::new([20.0, 8.0], [40, 24], 1.0).unwrap();
+    for pen in pens {
+        let shape = Shape::stroke(&path, &pen).unwrap();
+        for spread in [0.4, 5.0] {
+            let light = Light::directional([0.0, 0.0], spread).unwrap();
+            let shadow = light.cast(&shape, 1.0, 0.0).unwrap();
+            hash.floats(&densities(&shadow, &grid, &by(None), &mut scratch));
+        }
+    }
+    hash
+}
+
+fn tilted() -> Hash {
+    let (mut scratch, mut hash) = (Scratch::new(), Hash::new());
+    let light = Light::new([40.0, 10.0, 200.0], 60.0).unwrap();
+    let shapes = [
+        Shape::rounded_rect(20.0, 12.0, 44.0, 30.0, 6.0).unwrap(),
+        Shape::circle([40.0, 30.0], 20.0).unwrap(),
+    ];
+    let grid = Grid::new([10.0, 20.0], [48, 12], 1.0).unwrap();
+    for shape in shapes {
+        for elevation in [4.0, 30.0] {
+            let pose = Pose::turned(elevation, [40.0, 30.0], [1.0, 0.4], 0.5).unwrap();
+            let shadow = light.cast_posed(&shape, &pose, 0.0).unwrap();
+            let mut densities = vec![0.0; 48 * 12];
+            let options = PixelOptions::default();
+            shadow
+                .fill_f32(&grid, &mut densities, &options, &mut scratch)
+                .unwrap();
+            hash.floats(&densities);
+            // Below it the caster touches the ground, and refinement is long.
+            if elevation > 20.0 {
+                let mesh = shadow.mesh(Tolerance::levels(16.0).unwrap());
+                for vertex in mesh.vertices() {
+                    hash.floats(&vertex.position);
+                }
+            }
+        }
+    }
+    hash
+}
+
 fn scenes() -> [Scene; 2] {
     [
         include_str!("../fixtures/scenes/dialog-over-list.json"),
@@ -166,6 +224,8 @@ fn bits_are_those_of_every_other_machine() {
         meshes(),
         pictures(),
         svg(),
+        strokes(),
+        tilted(),
     ];
     let table: Vec<_> = GOLDEN
         .iter()
