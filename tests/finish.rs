@@ -491,8 +491,12 @@ fn scenes_name_what_is_wrong_with_a_finish() {
             "surfaces[0]: finish.environment.strength is 2: give a number from 0 to 1",
         ),
         (
-            r#"{"shading":"toon"}"#,
+            r#"{"rim":{"width":1,"height":1},"shading":"toon"}"#,
             "finish.shading \"toon\" is unknown: give flat, gouraud, phong, fast-phong, curvature",
+        ),
+        (
+            r#"{"shading":"phong"}"#,
+            "finish.shading is of a rim: give `rim` or leave it out",
         ),
         (
             r#"{"rim":{"width":1}}"#,

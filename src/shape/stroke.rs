@@ -134,7 +134,7 @@ impl Shape {
                 continue;
             }
             let (way, closed) = way::way(contour, &pen);
-            sides.append(&mut pen.along(&way, closed, &mut count)?);
+            sides.append(&mut pen.cover(&way, closed, &mut count)?);
         }
         let loops = resolve_loops(&sides, Winding::Positive, false);
         Self::of_loops(&loops)?.ok_or(Error::EmptyPath { field: "stroke" })
@@ -433,6 +433,24 @@ mod tests {
                         "case {case}: {points:?}, {closed}, {stroke:?}: {depth} at {at}"
                     );
                 }
+            }
+        }
+    }
+
+    /// As dots of icons are drawn: all is covered, in pieces.
+    #[test]
+    fn rings_tighter_than_their_pen_are_discs() {
+        for (radius, width) in [(0.5, 2.0), (1.0, 4.0), (5.0, 30.0)] {
+            for ring in [
+                "A R R 0 1 1 0 -RA R R 0 1 1 0 RZ",
+                "A R R 0 1 1 0 -RA R R 0 1 1 0 R",
+            ] {
+                let data = format!("M0 R{ring}").replace('R', &radius.to_string());
+                let pen = Stroke::new(width).unwrap().with_cap(LineCap::Round);
+                let shape = drawn(&data, &pen.with_join(LineJoin::Round));
+                let outer = radius + f64::from(width) / 2.0;
+                let off = area(&shape) / (PI * outer * outer) - 1.0;
+                assert!(off.abs() < 1e-4, "{radius}, {width}: {off}");
             }
         }
     }

@@ -13,10 +13,14 @@ use super::way::Line;
 use super::{LineCap, LineJoin, MAX_LINES, Stroke};
 use crate::error::Result;
 use crate::limits::at_most;
+use crate::outline::{Winding, resolve_loops};
 use crate::path::arc_steps;
 
 /// The largest `1 / cos²` of half a turn at which the two sides of the way are said to meet.
 const SHARPEST: f64 = 1e6;
+
+/// Lines that are united at once where a way has more bends than this that are tighter than the pen is wide.
+const PIECE: usize = 16;
 
 pub(super) struct Pen {
     /// Half its width.
@@ -85,37 +89,99 @@ impl Pen {
     }
 
     /// Loops that wind round what is covered along a way. `count` is how many lines strokes have so far.
-    pub(super) fn along(
+    pub(super) fn cover(
         &self,
         way: &[Line],
         closed: bool,
         count: &mut usize,
     ) -> Result<Vec<Vec<DVec2>>> {
-        let mut sides = Sides::default();
-        for pair in way.windows(2) {
-            self.turn(&pair[0], &pair[1], &mut sides, count)?;
+        let is_tight = |pair: &&[Line]| {
+            let turn = Turn::new(&pair[0], &pair[1]);
+            pair[1].bends && self.back(&turn) >= pair[0].room().min(pair[1].room())
+        };
+        if way.windows(2).filter(is_tight).count() > PIECE {
+            return self.in_pieces(way, closed, count);
         }
         let ([first, ..], [.., last]) = (way, way) else {
             return Ok(Vec::new());
         };
-        if closed {
-            self.turn(last, first, &mut sides, count)?;
-            sides.left.reverse();
-            sides.wedges.extend([sides.left, sides.right]);
-            return Ok(sides.wedges);
+        if !closed {
+            return self.along(way, [self.cap; 2], count);
         }
+        let mut sides = self.sides(way, count)?;
+        self.turn(last, first, &mut sides, count)?;
+        sides.left.reverse();
+        sides.wedges.extend([sides.left, sides.right]);
+        Ok(sides.wedges)
+    }
+
+    /// The same of a way with bends tighter than the pen is wide: there each line's end crosses all others', so that few at a time are
+    /// united first. Each piece begins with the last line of the one before: no gap of rounding is between them.
+    fn in_pieces(&self, way: &[Line], closed: bool, count: &mut usize) -> Result<Vec<Vec<DVec2>>> {
+        let mut way = way.to_vec();
+        if closed && let Some(first) = way.iter().position(|line| !line.is_turn()) {
+            way.extend_from_within(..=first);
+        }
+        let mut pieces = Vec::new();
+        let (mut start, last) = (0, way.len() - 1);
+        loop {
+            let next = (start + PIECE..last).find(|&index| !way[index].is_turn());
+            let end = next.unwrap_or(last);
+            let cap = |is_end: bool| {
+                if is_end && !closed {
+                    self.cap
+                } else {
+                    LineCap::Butt
+                }
+            };
+            let caps = [cap(start == 0), cap(end == last)];
+            let piece = self.along(&way[start..=end], caps, count)?;
+            pieces.append(&mut resolve_loops(&piece, Winding::Positive, false));
+            if end == last {
+                return Ok(pieces);
+            }
+            start = end;
+        }
+    }
+
+    /// Along an open way, with its first and its last cap.
+    fn along(
+        &self,
+        way: &[Line],
+        caps: [LineCap; 2],
+        count: &mut usize,
+    ) -> Result<Vec<Vec<DVec2>>> {
+        let ([first, ..], [.., last]) = (way, way) else {
+            return Ok(Vec::new());
+        };
+        let mut sides = self.sides(way, count)?;
         let mut all = sides.right;
-        self.end(last.to, last.along, &mut all, count)?;
+        self.end(caps[1], last.to, last.along, &mut all, count)?;
         all.extend(sides.left.iter().rev());
-        self.end(first.from, -first.along, &mut all, count)?;
+        self.end(caps[0], first.from, -first.along, &mut all, count)?;
         sides.wedges.push(all);
         Ok(sides.wedges)
     }
 
+    fn sides(&self, way: &[Line], count: &mut usize) -> Result<Sides> {
+        let mut sides = Sides::default();
+        for pair in way.windows(2) {
+            self.turn(&pair[0], &pair[1], &mut sides, count)?;
+        }
+        Ok(sides)
+    }
+
     /// A cap, from right to left.
-    fn end(&self, at: DVec2, along: DVec2, out: &mut Vec<DVec2>, count: &mut usize) -> Result<()> {
+    fn end(
+        &self,
+        cap: LineCap,
+        at: DVec2,
+        along: DVec2,
+        out: &mut Vec<DVec2>,
+        count: &mut usize,
+    ) -> Result<()> {
         let left = self.half * along.perp();
-        match self.cap {
+        match cap {
             LineCap::Butt => out.extend([at - left, at + left]),
             LineCap::Square => {
                 let at = at + self.half * along;
@@ -124,6 +190,11 @@ impl Pen {
             LineCap::Round => self.round(at, -left, PI, out, count)?,
         }
         Ok(())
+    }
+
+    /// How far from a corner the inner sides meet, along either line.
+    fn back(&self, turn: &Turn) -> f64 {
+        self.half * turn.across.abs() / (2.0 * turn.cos_squared)
     }
 
     /// From one line to the next: on the outer side the join, on the inner one where the sides meet.
@@ -163,7 +234,7 @@ impl Pen {
         }
         // The sides meet where neither line needs more than half of its length for it. Elsewhere they go by the way itself, as their
         // quadrilaterals do. Where a curve ends its last line is cut to where the curve heads.
-        let back = self.half * turn.across.abs() / (2.0 * turn.cos_squared);
+        let back = self.back(&turn);
         let (meeting, back) = match (before.is_turn(), after.is_turn()) {
             (false, false) => (tip, back),
             (true, false) if after.bends => (corners[0], 2.0 * back),
@@ -174,8 +245,9 @@ impl Pen {
             inner.push(at - meeting);
         } else {
             inner.extend([at - corners[0], at, at - corners[1]]);
-            // In a bend tighter than the pen is wide its inner end sweeps back over what no line's quadrilateral covers.
-            if after.bends {
+            // In a bend much tighter than the pen is wide its inner end sweeps back over what neither line's quadrilateral covers.
+            let swept = corners[0].distance(corners[1]);
+            if after.bends && swept > before.length() + after.length() {
                 let mut wedge = vec![at];
                 if self.is_slight(&turn) {
                     wedge.extend(corners.map(|corner| at - corner));

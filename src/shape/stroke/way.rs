@@ -34,12 +34,16 @@ impl Line {
         self.from == self.to
     }
 
+    pub(super) fn length(&self) -> f64 {
+        self.from.distance(self.to)
+    }
+
     /// How much of it the turn at either end may take.
     pub(super) fn room(&self) -> f64 {
         if self.is_turn() {
             f64::INFINITY
         } else {
-            self.from.distance(self.to) / 2.0
+            self.length() / 2.0
         }
     }
 
