@@ -1,6 +1,6 @@
 //! The lanes of vectors.
 
-use fearless_simd::{Simd, SimdBase, f32x16};
+use fearless_simd::{Simd, SimdBase, SimdCombine, f32x4, f32x16};
 
 /// Numbers that a kernel takes at once. It is the same on every machine, so that all round alike.
 pub(crate) const LANES: usize = 16;
@@ -20,6 +20,14 @@ pub(crate) const NUMBERS: [f32; LANES] = {
 #[inline(always)]
 pub(crate) fn lanes<S: Simd>(simd: S) -> f32x16<S> {
     f32x16::from_slice(simd, &NUMBERS)
+}
+
+/// A number for each row of a tile of four by four, at all of the row.
+#[inline(always)]
+pub(crate) fn spread<S: Simd>(simd: S, [a, b, c, d]: [f32; 4]) -> f32x16<S> {
+    let row = |number: f32| f32x4::splat(simd, number);
+    let (first, last) = (row(a).combine(row(b)), row(c).combine(row(d)));
+    first.combine(last)
 }
 
 /// The last `count` of a list's first `end` values and what is behind them, or else 0, as one block.

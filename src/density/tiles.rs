@@ -11,10 +11,10 @@ mod places;
 
 use core::f32::consts::FRAC_1_PI;
 
-use fearless_simd::{Simd, SimdBase, SimdCombine, SimdFloat, f32x4, f32x8, f32x16, i32x16};
+use fearless_simd::{Simd, SimdBase, SimdCombine, SimdFloat, f32x8, f32x16, i32x16};
 use glam::DVec2;
 
-use super::lanes::LANES;
+use super::lanes::{LANES, spread};
 use super::rows::{half_discs, line_at};
 use super::sweep::Sweep;
 use crate::outline::Edge;
@@ -248,14 +248,6 @@ impl Tiles {
             row[columns - 1] = 0.0;
         }
     }
-}
-
-/// A number for each row of a tile, at all samples of the row.
-#[inline(always)]
-fn spread<S: Simd>(simd: S, [a, b, c, d]: [f32; SIDE]) -> f32x16<S> {
-    let row = |number: f32| f32x4::splat(simd, number);
-    let (first, last) = (row(a).combine(row(b)), row(c).combine(row(d)));
-    first.combine(last)
 }
 
 #[cfg(test)]

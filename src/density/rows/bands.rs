@@ -5,7 +5,7 @@
 
 use core::ops::Range;
 
-use fearless_simd::{Simd, SimdBase, f32x16};
+use fearless_simd::{Simd, SimdBase, SimdCombine, SimdFloat, f32x4, f32x16, i32x16};
 use glam::DVec2;
 
 use super::entries::{self, UNIT};
@@ -16,7 +16,7 @@ use super::spans::Spans;
 use super::stroke::Stroke;
 use super::{Lattice, Points, STRETCH, Window};
 use crate::density::Sink;
-use crate::density::lanes::LANES;
+use crate::density::lanes::{LANES, spread};
 use crate::density::sweep::Sweep;
 use crate::outline::Edge;
 
@@ -27,14 +27,17 @@ const SIDE: usize = 4;
 /// From a band's first row to its last, in pixels.
 const HEIGHT: f64 = (SIDE - 1) as f64;
 
-/// What one piece of the outline does to a band.
+/// What one piece of the outline does to a band, seen from one of its pixels' lines of points.
 #[derive(Debug, Clone, Copy)]
 struct Entry {
     first: i64,
     end: i64,
     piece: u32,
+    line: u32,
     /// What its passing adds to all columns of each row from `end` on.
-    steps: [i64; SIDE],
+    steps: [i32; SIDE],
+    /// `half_disc` at the y of its two ends, seen from each row.
+    halves: [[f32; SIDE]; 2],
 }
 
 /// Draws bands of one outline, from top to bottom.
@@ -42,13 +45,13 @@ struct Entry {
 pub(crate) struct Bands {
     pieces: Vec<Piece>,
     sweep: Sweep,
-    /// By their first column.
+    /// By their first column, then as pieces and lines are numbered: whatever columns are asked for, sums have one order.
     entries: Vec<Entry>,
     /// Steps left of the columns that are drawn.
     before: [i64; SIDE],
     top: f64,
     /// Where the entries of a cluster end, and their steps.
-    steps: Vec<(i64, [i64; SIDE])>,
+    steps: Vec<(i64, [i32; SIDE])>,
     /// The densities of a cluster, tile by tile.
     tiles: Vec<f32>,
     spans: Spans<SIDE>,
@@ -61,23 +64,19 @@ pub(crate) fn to_tiles(columns: &Range<i64>) -> Range<i64> {
     columns.start.div_euclid(BAND) * BAND..(columns.end + BAND - 1).div_euclid(BAND) * BAND
 }
 
-/// The row and the column of each of a tile's lanes.
-const PLACES: [[f32; LANES]; 2] = {
-    let mut places = [[0.0; LANES]; 2];
+/// The column of each of a tile's lanes.
+const COLUMNS: [f32; LANES] = {
+    let mut columns = [0.0; LANES];
     let mut lane = 0;
     while lane < LANES {
-        places[0][lane] = (lane / SIDE) as f32;
-        places[1][lane] = (lane % SIDE) as f32;
+        columns[lane] = (lane % SIDE) as f32;
         lane += 1;
     }
-    places
+    columns
 };
 
-/// How far below a band's first row each lane's pixel is, for rows `pitch` apart.
-#[inline(always)]
-fn down<S: Simd>(simd: S, pitch: f64) -> f32x16<S> {
-    f32x16::from_slice(simd, &PLACES[0]) * pitch as f32
-}
+/// A band's rows.
+const ROWS: [f32; SIDE] = [0.0, 1.0, 2.0, 3.0];
 
 impl Bands {
     /// Takes the outline's edges, in penumbra radii.
@@ -108,7 +107,7 @@ impl Bands {
             || self.find_entries(simd, top, columns, lattice, points),
         );
         self.entries
-            .sort_unstable_by_key(|entry| (entry.first, entry.piece));
+            .sort_unstable_by_key(|entry| (entry.first, entry.piece, entry.line));
     }
 
     #[inline(always)]
@@ -121,7 +120,8 @@ impl Bands {
         points: &Points<'_>,
     ) {
         let (height, spread) = (points.height(), points.width() * lattice.pitch);
-        let (bottom, reach) = (top + HEIGHT * lattice.pitch, 1.0 + height);
+        let rows = HEIGHT * lattice.pitch;
+        let (bottom, reach) = (top + rows, 1.0 + height);
         let pieces = &self.pieces;
         self.sweep
             .go_to(pieces, [top - reach, bottom + reach], |p| [p.low, p.high]);
@@ -130,7 +130,7 @@ impl Bands {
         self.top = top;
         let next = self.sweep.ahead(pieces).map_or(f64::INFINITY, |p| p.low);
         self.still_until = next - reach;
-        let down = down(simd, lattice.pitch);
+        let down = f32x4::from_slice(simd, &ROWS) * lattice.pitch as f32;
         for &index in self.sweep.active() {
             let piece = &pieces[index as usize];
             let still = piece.is_upright() && piece.low <= top - reach;
@@ -139,31 +139,31 @@ impl Bands {
             } else {
                 f64::NEG_INFINITY
             });
-            let mut steps = [0; SIDE];
-            for line in points.lines {
-                let halves = piece.halves(simd, top + line.offset, down);
-                let mut ends = [[0.0; LANES]; 2];
-                halves[0].store_slice(&mut ends[0]);
-                halves[1].store_slice(&mut ends[1]);
-                for (row, step) in steps.iter_mut().enumerate() {
-                    *step += entries::step(line, [ends[0][row * SIDE], ends[1][row * SIDE]]);
-                }
-            }
             let [left, right] = piece.extent([top - height, bottom + height], Window::Disc);
             // One column to spare on both sides, whichever way these are rounded.
             let column = |x: f64| ((x - lattice.start) * lattice.density) as i64;
             let reached = to_tiles(&(column(left - spread) - 1..column(right + spread) + 2));
-            if reached.end <= columns.start {
-                for (before, step) in self.before.iter_mut().zip(steps) {
-                    *before += step;
+            if reached.start >= columns.end {
+                continue;
+            }
+            for (number, line) in points.lines.iter().enumerate() {
+                let top = top + line.offset;
+                if piece.low >= top + rows + 1.0 || piece.high <= top - 1.0 {
+                    continue;
                 }
-            } else if reached.start < columns.end {
-                self.entries.push(Entry {
-                    first: reached.start,
-                    end: reached.end,
-                    piece: index,
-                    steps,
-                });
+                let (halves, steps) = piece.halves(simd, top, down, line.weight);
+                if reached.end <= columns.start {
+                    add(&mut self.before, steps);
+                } else {
+                    self.entries.push(Entry {
+                        first: reached.start,
+                        end: reached.end,
+                        piece: index,
+                        line: number as u32,
+                        steps,
+                        halves,
+                    });
+                }
             }
         }
     }
@@ -195,9 +195,7 @@ impl Bands {
             next = stop;
             let mut after = base;
             for entry in &self.entries[start..next] {
-                for (after, step) in after.iter_mut().zip(entry.steps) {
-                    *after += step;
-                }
+                add(&mut after, entry.steps);
             }
             let (from, to) = (first.clamp(at, columns.end), end.clamp(at, columns.end));
             self.spans.push_constant(at..from, base);
@@ -224,7 +222,7 @@ impl Bands {
         self.lay_steps(simd, &cluster, &columns, base);
         let down = simd.vectorize(
             #[inline(always)]
-            || down(simd, lattice.pitch),
+            || spread(simd, ROWS) * lattice.pitch as f32,
         );
         for entry in &self.entries[cluster] {
             let from = entry.first.max(columns.start);
@@ -233,46 +231,41 @@ impl Bands {
             if from >= to {
                 continue;
             }
-            for line in points.lines {
-                let top = self.top + line.offset;
-                let bottom = top + HEIGHT * lattice.pitch;
-                if piece.low >= bottom + 1.0 || piece.high <= top - 1.0 {
-                    continue;
-                }
-                let place = |column: i64| (column - columns.start) as usize * SIDE;
-                let mut part = &mut self.tiles[place(from)..place(to)];
-                let mut column = from;
-                // Long ones stretch by stretch, counted from where the piece begins.
-                while !part.is_empty() {
-                    let origin = entry.first + (column - entry.first) / STRETCH * STRETCH;
-                    let stop = (origin + STRETCH).min(to);
-                    let (now, rest) = part.split_at_mut((stop - column) as usize * SIDE);
-                    simd.vectorize(
-                        #[inline(always)]
-                        || {
-                            let x = lattice.start + origin as f64 * lattice.pitch;
-                            let view = View {
-                                simd,
-                                origin: DVec2::new(x, top),
-                                down,
-                                pitch: lattice.pitch,
-                            };
-                            let halves = piece.halves(simd, top, down);
-                            let stroke = Stroke {
-                                form: piece.seen_from(&view, bottom, halves),
-                                columns: f32x16::from_slice(simd, &PLACES[1])
-                                    + (column - origin) as f32,
-                                step: SIDE as f32,
-                                halves,
-                                line,
-                                points: points.columns,
-                            };
-                            stroke.add_to(simd, now);
-                        },
-                    );
-                    part = rest;
-                    column = stop;
-                }
+            let line = &points.lines[entry.line as usize];
+            let top = self.top + line.offset;
+            let place = |column: i64| (column - columns.start) as usize * SIDE;
+            let mut part = &mut self.tiles[place(from)..place(to)];
+            let mut column = from;
+            // Long ones stretch by stretch, counted from where the piece begins.
+            while !part.is_empty() {
+                let origin = entry.first + (column - entry.first) / STRETCH * STRETCH;
+                let stop = (origin + STRETCH).min(to);
+                let (now, rest) = part.split_at_mut((stop - column) as usize * SIDE);
+                simd.vectorize(
+                    #[inline(always)]
+                    || {
+                        let x = lattice.start + origin as f64 * lattice.pitch;
+                        let view = View {
+                            simd,
+                            origin: DVec2::new(x, top),
+                            down,
+                            pitch: lattice.pitch,
+                        };
+                        let bottom = top + HEIGHT * lattice.pitch;
+                        let halves = [spread(simd, entry.halves[0]), spread(simd, entry.halves[1])];
+                        let stroke = Stroke {
+                            form: piece.seen_from(&view, bottom, halves),
+                            columns: f32x16::from_slice(simd, &COLUMNS) + (column - origin) as f32,
+                            step: SIDE as f32,
+                            halves,
+                            line,
+                            points: points.columns,
+                        };
+                        stroke.add_to(simd, now);
+                    },
+                );
+                part = rest;
+                column = stop;
             }
         }
         let values = &mut self.spans.values;
@@ -311,18 +304,12 @@ impl Bands {
                 let last = (columns.end, [0; SIDE]);
                 for (end, steps) in steps.iter().chain(core::iter::once(&last)) {
                     let end = (end - columns.start).clamp(at, width);
-                    let mut lanes = [0.0; LANES];
-                    for (lane, value) in lanes.iter_mut().enumerate() {
-                        *value = (sums[lane / SIDE] as f64 / UNIT) as f32;
-                    }
-                    let lanes = f32x16::from_slice(simd, &lanes);
+                    let lanes = spread(simd, sums.map(|sum| (sum as f64 / UNIT) as f32));
                     let part = &mut tiles[at as usize * SIDE..end as usize * SIDE];
                     for tile in part.as_chunks_mut::<LANES>().0 {
                         lanes.store_slice(tile);
                     }
-                    for (sum, step) in sums.iter_mut().zip(steps) {
-                        *sum += step;
-                    }
+                    add(&mut sums, *steps);
                     at = end;
                 }
             },
@@ -368,12 +355,35 @@ fn untile<S: Simd>(simd: S, tiles: &[f32], width: usize, values: &mut [f32]) {
 }
 
 impl Piece {
-    /// `half_disc` at the y of its two ends, seen from rows so far `down` from `top`.
+    /// `half_disc` at the y of its two ends, seen from rows so far `down` from `top`, and what its passing adds to all on its right if
+    /// they count by a `weight`. Each end is rounded alone, so that what follows cancels it.
     #[inline(always)]
-    fn halves<S: Simd>(&self, simd: S, top: f64, down: f32x16<S>) -> [f32x16<S>; 2] {
-        // A closure would not always be inlined.
-        let from = f32x16::splat(simd, (self.from.y - top) as f32) - down;
-        let to = f32x16::splat(simd, (self.to.y - top) as f32) - down;
-        [half_discs(simd, from), half_discs(simd, to)]
+    fn halves<S: Simd>(
+        &self,
+        simd: S,
+        top: f64,
+        down: f32x4<S>,
+        weight: f64,
+    ) -> ([[f32; SIDE]; 2], [i32; SIDE]) {
+        let from = f32x4::splat(simd, (self.from.y - top) as f32) - down;
+        let to = f32x4::splat(simd, (self.to.y - top) as f32) - down;
+        let ends = from.combine(to);
+        let halves = half_discs(simd, ends.combine(ends));
+        let whole: i32x16<S> = (halves * (2.0 * UNIT * weight) as f32).to_int();
+        let (mut ends, mut units) = ([0.0; LANES], [0; LANES]);
+        halves.store_slice(&mut ends);
+        whole.store_slice(&mut units);
+        let [a, b, c, d, e, f, g, h, ..] = ends;
+        let halves = [[a, b, c, d], [e, f, g, h]];
+        let [a, b, c, d, e, f, g, h, ..] = units;
+        (halves, [a - e, b - f, c - g, d - h])
+    }
+}
+
+/// Adds each row's step to its sum.
+#[inline(always)]
+fn add(sums: &mut [i64; SIDE], steps: [i32; SIDE]) {
+    for (sum, step) in sums.iter_mut().zip(steps) {
+        *sum += i64::from(step);
     }
 }
