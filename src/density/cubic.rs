@@ -5,24 +5,49 @@ use fearless_simd::{Simd, SimdBase, f32x16};
 use super::lanes::LANES;
 
 /// The weights of four neighbours, for a point `share` of the way from the second to the third.
+#[inline(always)]
 pub(super) fn weights(share: f64) -> [f32; 4] {
-    let (t, u) = (share, 1.0 - share);
-    [
-        -0.5 * t * u * u,
-        1.0 - 2.5 * t * t + 1.5 * t * t * t,
-        1.0 - 2.5 * u * u + 1.5 * u * u * u,
-        -0.5 * u * t * t,
-    ]
-    .map(|weight| weight as f32)
+    at(&POWERS, share as f32)
 }
 
 /// The same with what errs least at the power of 1.5, as which densities leave 0 and 1: a share is taken of the second difference of four
 /// rows, which straight lines do not have.
+#[inline(always)]
 pub(super) fn touching(share: f64) -> [f32; 4] {
-    const TAKEN: f64 = 0.07;
-    let taken = (TAKEN * share * (1.0 - share)) as f32;
-    let [a, b, c, d] = weights(share);
-    [a - taken, b + taken, c + taken, d - taken]
+    const TAKEN: f32 = 0.07;
+    /// `TAKEN` t (1 - t) of it.
+    const TOUCHING: [[f32; 4]; 4] = {
+        let [constant, mut linear, mut square, cube] = POWERS;
+        let mut neighbour = 0;
+        while neighbour < 4 {
+            linear[neighbour] -= TAKEN * DIFFERENCE[neighbour];
+            square[neighbour] += TAKEN * DIFFERENCE[neighbour];
+            neighbour += 1;
+        }
+        [constant, linear, square, cube]
+    };
+    at(&TOUCHING, share as f32)
+}
+
+/// The weights by the powers of the share.
+const POWERS: [[f32; 4]; 4] = [
+    [0.0, 1.0, 0.0, 0.0],
+    [-0.5, 0.0, 0.5, 0.0],
+    [1.0, -2.5, 2.0, -0.5],
+    [-0.5, 1.5, -1.5, 0.5],
+];
+
+/// The second difference of four.
+const DIFFERENCE: [f32; 4] = [1.0, -1.0, -1.0, 1.0];
+
+#[inline(always)]
+fn at([constant, linear, square, cube]: &[[f32; 4]; 4], t: f32) -> [f32; 4] {
+    let mut weights = [0.0; 4];
+    for (neighbour, weight) in weights.iter_mut().enumerate() {
+        *weight = ((cube[neighbour] * t + square[neighbour]) * t + linear[neighbour]) * t
+            + constant[neighbour];
+    }
+    weights
 }
 
 /// The density between four neighbours, by their weights.

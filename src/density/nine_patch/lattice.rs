@@ -13,9 +13,10 @@ pub(super) struct Lattice {
     pub(super) shape: Rounded,
     /// How far a pixel's average reaches.
     pub(super) reach: f64,
-    /// The y of row 0, and pixels from one to the next.
+    /// The y of row 0, pixels from one to the next, and rows a pixel.
     start: f64,
     pitch: f64,
+    density: f64,
     /// Whether pixels are interpolated between them: otherwise there is one for each row of pixels.
     is_apart: bool,
     /// Every so manyth of them is enough, a power of two, except where corners' circles have tips.
@@ -68,6 +69,7 @@ impl Lattice {
             reach,
             start,
             pitch,
+            density: 1.0 / pitch,
             is_apart,
             step,
             tips: 0.0..0.0,
@@ -98,7 +100,7 @@ impl Lattice {
 
     /// Where among the rows a y is.
     pub(super) fn row_at(&self, y: f64) -> f64 {
-        (y - self.start) / self.pitch
+        (y - self.start) * self.density
     }
 
     /// The same in the half of which the other is the likeness.
@@ -162,8 +164,8 @@ impl Lattice {
             self.step
         };
         let row = whole_below(place) & -step;
-        let share = (place - row as f64) / step as f64;
         if self.is_apart {
+            let share = (place - row as f64) / step as f64;
             Cell {
                 rows: [
                     self.folded(row - step),
