@@ -249,7 +249,13 @@ fn tile(c: &mut Criterion) {
         group.bench_function(BenchmarkId::new("ready-mask", name), |b| {
             b.iter(|| {
                 paint
-                    .blend_mask(&grid, black_box(&mask), &mut canvas, &mut scratch)
+                    .blend_mask(
+                        &grid,
+                        black_box(&mask),
+                        grid.stride(),
+                        &mut canvas,
+                        &mut scratch,
+                    )
                     .unwrap();
             });
         });

@@ -333,7 +333,7 @@ mod tests {
                         .blend_rgba8(&grid, &mut pixels, &paint, &options, &mut scratch)
                         .unwrap();
                     paint
-                        .blend_mask(&grid, &mask, &mut pixels, &mut scratch)
+                        .blend_mask(&grid, &mask, grid.stride(), &mut pixels, &mut scratch)
                         .unwrap();
                     let bits: Vec<u32> = densities.iter().map(|d| d.to_bits()).collect();
                     (bits, mask, pixels)

@@ -59,16 +59,16 @@ impl Grid {
     ///
     /// # Errors
     /// A stride below the width, above 2^31, or so large that the buffer could not be addressed.
-    pub fn with_stride(mut self, stride: usize) -> Result<Self> {
-        error::within(
-            "grid.stride",
-            stride as f64,
-            f64::from(self.width),
-            2_147_483_648.0,
-        )?;
+    pub fn with_stride(self, stride: usize) -> Result<Self> {
+        self.strided("grid.stride", stride)
+    }
+
+    /// The same; an error tells of a `field`.
+    pub(crate) fn strided(mut self, field: &'static str, stride: usize) -> Result<Self> {
+        error::within(field, stride as f64, f64::from(self.width), 2_147_483_648.0)?;
         if stride.checked_mul(self.height as usize).is_none() {
             return Err(Error::OutOfRange {
-                field: "grid.stride",
+                field,
                 value: stride as f64,
                 min: f64::from(self.width),
                 max: usize::MAX as f64 / f64::from(self.height),

@@ -142,8 +142,8 @@ pub use limits::Limits;
 #[cfg(feature = "lyon")]
 pub use mesh::LyonBuffers;
 pub use mesh::{
-    CompactMesh, CompactVertex, Incomplete, MeshBuffers, MeshCache, MeshIndex, MeshOptions,
-    MeshQuality, MeshSink, MeshSlices, MeshVertex, Profile, ShadowMesh, meshes_to_svg,
+    CachedMesh, CompactMesh, CompactVertex, Incomplete, MeshBuffers, MeshCache, MeshIndex,
+    MeshOptions, MeshQuality, MeshSink, MeshSlices, MeshVertex, Profile, ShadowMesh, meshes_to_svg,
 };
 pub use nine_patch::{NinePatch, PatchPlace, ShadowKey};
 pub use paint::Paint;

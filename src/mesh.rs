@@ -40,7 +40,7 @@ use core::f64::consts::{FRAC_2_PI, PI};
 
 use glam::DVec2;
 
-pub use cache::MeshCache;
+pub use cache::{CachedMesh, MeshCache};
 use cells::Cells;
 pub use compact::{CompactMesh, CompactVertex};
 pub use export::meshes_to_svg;

@@ -355,7 +355,7 @@ mod tests {
                 .blend_rgba8(place, &grid, &mut pixels, &paint, &mut scratch)
                 .unwrap();
             paint
-                .blend_mask(&grid, &mask, &mut expected, &mut scratch)
+                .blend_mask(&grid, &mask, grid.stride(), &mut expected, &mut scratch)
                 .unwrap();
             assert!(pixels == expected, "{key:?}");
         }

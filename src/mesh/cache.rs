@@ -32,10 +32,11 @@ use crate::shadow::Shadow;
 /// for scroll in [0.0, 8.0, 64.5] {
 ///     let card = Shape::rounded_rect(16.0, 100.0 + scroll, 300.0, 200.0, 12.0)?;
 ///     let shadow = light.cast(&card, 8.0, 0.0)?;
-///     let (mesh, offset) = cache.mesh(&shadow, Tolerance::ONE_LEVEL);
-///     assert!(mesh.error_levels() <= 1.0);
-///     // Drawn with `offset` added to each vertex.
-///     assert!(offset[1] > f64::from(100.0 + scroll));
+///     let kept = cache.mesh(&shadow, Tolerance::ONE_LEVEL);
+///     assert!(kept.mesh.error_levels() <= 1.0);
+///     // Given to a GPU once for each `id`, drawn with `offset` added to each vertex.
+///     assert_eq!(kept.id, 1);
+///     assert!(kept.offset[1] > f64::from(100.0 + scroll));
 /// }
 /// assert_eq!((cache.hits(), cache.misses()), (2, 1));
 /// // Another size is another mesh, of the same corners.
@@ -55,9 +56,22 @@ pub struct MeshCache {
     misses: u64,
 }
 
+/// A mesh that a [`MeshCache`] lends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CachedMesh<'a> {
+    /// The triangles, about an origin of their own.
+    pub mesh: &'a ShadowMesh,
+    /// What is to be added to the vertices' positions, x and y in scene units.
+    pub offset: [f64; 2],
+    /// The mesh's number among all that the cache made, from 1 on: what a GPU holds of a mesh can be kept by it for as long as the cache
+    /// [has](MeshCache::has) it.
+    pub id: u64,
+}
+
 #[derive(Debug, Clone)]
 struct Kept {
     key: Vec<u64>,
+    id: u64,
     mesh: ShadowMesh,
     /// The number of the question that it last answered.
     used: u64,
@@ -77,13 +91,9 @@ impl MeshCache {
         }
     }
 
-    /// The shadow's mesh and the offset (x, y; scene units) that is to be added to its vertices: within the tolerance, as
-    /// [`Shadow::mesh`] is, before the sums are rounded. A new mesh takes the place of the one that was not used for longest.
-    pub fn mesh(
-        &mut self,
-        shadow: &Shadow,
-        options: impl Into<MeshOptions>,
-    ) -> (&ShadowMesh, [f64; 2]) {
+    /// The shadow's mesh: with the offset added to its vertices it is within the tolerance, as [`Shadow::mesh`] is, before the sums are
+    /// rounded. A new mesh takes the place of the one that was not used for longest.
+    pub fn mesh(&mut self, shadow: &Shadow, options: impl Into<MeshOptions>) -> CachedMesh<'_> {
         let options = options.into();
         let origin = shadow.hull().map_or(DVec2::ZERO, |(min, _)| min);
         let step = step(shadow, &options);
@@ -103,7 +113,12 @@ impl MeshCache {
             mesh.error_levels += alike;
             mesh
         });
-        (&self.meshes[index].mesh, origin.to_array())
+        let Kept { id, mesh, .. } = &self.meshes[index];
+        CachedMesh {
+            mesh,
+            offset: origin.to_array(),
+            id: *id,
+        }
     }
 
     /// The mesh of a shadow that differs in nothing, not even in its place, or else the one that is made.
@@ -138,6 +153,7 @@ impl MeshCache {
     fn keep(&mut self, mesh: ShadowMesh) -> usize {
         let kept = Kept {
             key: self.key.clone(),
+            id: self.misses,
             mesh,
             used: 0,
         };
@@ -149,6 +165,12 @@ impl MeshCache {
         let index = oldest.map_or(0, |(index, _)| index);
         self.meshes[index] = kept;
         index
+    }
+
+    /// Whether it holds the mesh of that [id](CachedMesh::id).
+    #[must_use]
+    pub fn has(&self, id: u64) -> bool {
+        self.meshes.iter().any(|kept| kept.id == id)
     }
 
     /// How many meshes it holds.
@@ -226,7 +248,9 @@ mod tests {
             for offset in [[10.0, 20.0], [300.25, 20.5], [17.0, 903.1], [-40.7, -3.3]] {
                 let moved = shape.translated(offset).unwrap();
                 let shadow = light.cast(&moved, 6.0, 0.0).unwrap();
-                let (mesh, [x, y]) = cache.mesh(&shadow, Tolerance::ONE_LEVEL);
+                let kept = cache.mesh(&shadow, Tolerance::ONE_LEVEL);
+                let (mesh, [x, y]) = (kept.mesh, kept.offset);
+                assert_eq!(kept.id, 1);
                 assert!(mesh.is_complete() && mesh.error_levels() <= 1.0);
                 for [a, b, c] in mesh.triangles() {
                     let middle = [0, 1].map(|i: usize| {
@@ -278,12 +302,18 @@ mod tests {
         let mut ask = |width: f32| {
             let shadow = light.cast(&card(0.0, 0.0, width), 8.0, 0.0).unwrap();
             let before = cache.hits();
-            cache.mesh(&shadow, Tolerance::levels(8.0).unwrap());
-            (cache.hits() > before, cache.len())
+            let id = cache.mesh(&shadow, Tolerance::levels(8.0).unwrap()).id;
+            (cache.hits() > before, cache.len(), id)
         };
         let asked = [30.0, 40.0, 30.0, 50.0, 30.0, 40.0].map(&mut ask);
-        let hits = asked.map(|(hit, _)| hit);
+        let hits = asked.map(|(hit, ..)| hit);
         assert_eq!(hits, [false, false, true, false, true, false]);
-        assert_eq!(asked.map(|(_, len)| len), [1, 2, 2, 2, 2, 2]);
+        assert_eq!(asked.map(|(_, len, _)| len), [1, 2, 2, 2, 2, 2]);
+        // What is made again is another mesh to those who keep it.
+        assert_eq!(asked.map(|(.., id)| id), [1, 2, 1, 3, 1, 4]);
+        assert_eq!(
+            [1, 2, 3, 4].map(|id| cache.has(id)),
+            [true, false, false, true]
+        );
     }
 }
