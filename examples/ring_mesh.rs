@@ -24,7 +24,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         );
         meshes.push(mesh);
     }
-    fs::write(&output, meshes_to_svg(&meshes))?;
+    fs::write(&output, meshes_to_svg(&meshes, 1.0)?)?;
     println!("{}", output.display());
     Ok(())
 }

@@ -52,7 +52,8 @@ pub(crate) fn run(path: &Path, file: &Path, options: MeshOptions) -> Result<(), 
             }
             text
         }
-        _ => meshes_to_svg(made.iter().map(|made| &made.mesh)),
+        _ => meshes_to_svg(made.iter().map(|made| &made.mesh), scene.scale())
+            .map_err(|error| error.to_string())?,
     };
     output::write(file, text.as_bytes())?;
     for (surface, field) in surfaces() {
