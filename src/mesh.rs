@@ -196,13 +196,12 @@ impl Shadow {
         let Some(rounded) = self.rounded().filter(|_| disc) else {
             return Ok(None);
         };
-        let far = rounded.min.abs().max(rounded.max.abs()).max_element();
-        let step = far * f64::from(f32::EPSILON);
+        let step = step(rounded.min, rounded.max);
         let Some(strips) = Strips::of(&rounded, radius) else {
             return Ok(None);
         };
         let levels = options.tolerance.as_levels();
-        let rounding = rounding_levels(far, radius);
+        let rounding = rounding_levels(step, radius);
         // In powers of two, so that shadows at other places go by the same template.
         let share = if rounding > levels * ROUNDING_SHARE {
             2.0 * power_of_two_below(rounding)
@@ -252,8 +251,7 @@ impl Shadow {
         }
 
         // What rounding leaves nothing of is refined as far as it leaves some.
-        let far = min.abs().max(max.abs()).max_element();
-        let rounding = rounding_levels(far, radius);
+        let rounding = rounding_levels(step, radius);
         let is_coarser = rounding > levels * REFINED_ROUNDING;
         if is_coarser {
             options.tolerance = options
@@ -414,10 +412,10 @@ const SPARE: f64 = 1.0 / 32.0;
 /// What they make up for, over it: with all else that is taken of the tolerance as much as before is left beside them.
 const TAKEN: f64 = 1.2;
 
-/// How wrong densities may be for coordinates up to `far` that are rounded to `f32`, in levels: density changes by at most 2 / π over the
-/// penumbra radius.
-fn rounding_levels(far: f64, radius: f64) -> f64 {
-    255.0 * far * f64::from(f32::EPSILON) * FRAC_2_PI / radius
+/// How wrong densities may be for coordinates that are rounded to `f32`, which tells places a `step` apart, in levels: density changes by
+/// at most 2 / π over the penumbra radius.
+fn rounding_levels(step: f64, radius: f64) -> f64 {
+    255.0 * step * FRAC_2_PI / radius
 }
 
 /// The power of two at or below a number above 0: that without its fraction bits.

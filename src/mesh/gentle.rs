@@ -132,8 +132,7 @@ impl Shadow {
         }
         let (outline, center, curve) = self.gentle_curve()?;
         let (min, max) = outline.bounds()?;
-        let far = min.abs().max(max.abs()).max_element() + radius;
-        let rounding = rounding_levels(far, radius);
+        let rounding = rounding_levels(step(min - radius, max + radius), radius);
         let (mut field, unsure) = self.field(&outline, levels, center);
         let limit = (levels - rounding) / 255.0 - unsure;
         if limit <= 0.0 {

@@ -26,7 +26,9 @@ use self::folds::{Folds, Sides};
 use self::halves::Halves;
 use self::tips::Tip;
 use self::tube::Tube;
-use super::{Effort, MeshOptions, MeshQuality, MeshSink, MeshVertex, Profile, rounding_levels};
+use super::{
+    Effort, MeshOptions, MeshQuality, MeshSink, MeshVertex, Profile, rounding_levels, step,
+};
 use crate::density::tiles::{self, Lattice, Tiles};
 use crate::error::Result;
 use crate::outline::{self, Edge};
@@ -233,8 +235,7 @@ impl HalvingScratch {
         let radius = shadow.radius();
         let end = lattice.size.map(|count| 2 * count);
         let end = lattice.place(end) + self.folds.offset(end, [true; 2]);
-        let far = lattice.corner.abs().max(end.abs());
-        let rounding = rounding_levels(far.max_element(), radius);
+        let rounding = rounding_levels(step(lattice.corner, end), radius);
         if rounding > ROUNDING_SHARE * levels {
             return f64::INFINITY;
         }

@@ -18,7 +18,7 @@ use super::refine::Refinement;
 use super::tangents::{ProjectionCircle, tangent_loops, tangent_normal};
 use super::{
     CURVED, FIELD_SHARE, Incomplete, MeshOptions, NARROWEST, ShadowMesh, pieces, ring_flatness,
-    rounding_levels, umbra,
+    rounding_levels, step, umbra,
 };
 use crate::error::MAX_COORDINATE;
 use crate::outline::{Winding, resolve_loops, sides};
@@ -60,8 +60,7 @@ impl TiltedShadow {
         let Some((min, max)) = self.hull() else {
             return ShadowMesh::empty();
         };
-        let reach = min.abs().max(max.abs()).max_element();
-        if reach >= MAX_COORDINATE {
+        if min.abs().max(max.abs()).max_element() >= MAX_COORDINATE {
             return ShadowMesh::empty().short_of(Incomplete::Endless);
         }
         // As for level casters: about a centre that `f32` holds.
@@ -87,7 +86,7 @@ impl TiltedShadow {
         let (least, most) = radii.fold((f64::MAX, 0.0), |(least, most), radius| {
             (radius.min(least), radius.max(most))
         });
-        let step = reach * f64::from(f32::EPSILON);
+        let step = step(min, max);
         if most < step * NARROWEST {
             let centers = |circles: &Vec<ProjectionCircle>| {
                 circles.iter().map(|circle| circle.center).collect()
@@ -98,7 +97,7 @@ impl TiltedShadow {
         }
         let radius = least.max(most * SMALLEST);
         let facing = seen.facing([min - center, max - center]);
-        let pieces = pieces(levels, rounding_levels(reach, radius));
+        let pieces = pieces(levels, rounding_levels(step, radius));
         let count = circles.iter().map(Vec::len).sum::<usize>() * pieces.knots.len();
         let has_rings = least == radius && 2 * count <= options.max_vertices;
         let rings = match facing.filter(|_| has_rings) {
