@@ -88,18 +88,18 @@ impl Shadow {
 
     /// The mesh, with the corners that a scratch keeps.
     fn mesh_with(&self, options: &MeshOptions, scratch: &mut Scratch) -> ShadowMesh {
-        if !self.apart().is_empty() {
-            return self.in_parts(options, scratch);
-        }
         let mut buffers = MeshBuffers::new();
         match self.patterned(options, scratch, &mut buffers) {
             Ok(Some(quality)) => ShadowMesh::filled(buffers, quality),
-            _ => self.triangulated(options),
+            _ => self.unpatterned(options, scratch),
         }
     }
 
-    /// The meshes of parts that do not meet, one after another: each is what suits it, however many there are.
-    fn in_parts(&self, options: &MeshOptions, scratch: &mut Scratch) -> ShadowMesh {
+    /// The mesh by triangulation; of parts that do not meet one mesh after another: each is what suits it, however many there are.
+    fn unpatterned(&self, options: &MeshOptions, scratch: &mut Scratch) -> ShadowMesh {
+        if self.apart().is_empty() {
+            return self.triangulated(options);
+        }
         let mut all = ShadowMesh::empty();
         let mut options = *options;
         for part in self.apart() {
@@ -126,16 +126,11 @@ impl Shadow {
         scratch: &mut Scratch,
     ) -> Result<MeshQuality> {
         let options = options.into();
-        let is_apart = !self.apart().is_empty();
-        if !is_apart && let Some(quality) = self.patterned(&options, scratch, sink)? {
+        if let Some(quality) = self.patterned(&options, scratch, sink)? {
             return Ok(quality);
         }
         let mesh = scratch.meshes.same(self, &options, || {
-            if is_apart {
-                self.in_parts(&options, &mut Scratch::new())
-            } else {
-                self.triangulated(&options)
-            }
+            self.unpatterned(&options, &mut Scratch::new())
         });
         sink.begin(mesh.vertices.len(), mesh.indices.len() / 3)?;
         for &vertex in &mesh.vertices {
@@ -147,13 +142,16 @@ impl Shadow {
         Ok(MeshQuality::new(mesh.error_levels, mesh.incomplete))
     }
 
-    /// The mesh without a triangulation, if the shadow is one of those that do without.
+    /// The mesh without a triangulation, if the shadow is one of those that do without: not of several parts, each of which may be.
     fn patterned(
         &self,
         options: &MeshOptions,
         scratch: &mut Scratch,
         sink: &mut impl MeshSink,
     ) -> Result<Option<MeshQuality>> {
+        if !self.apart().is_empty() {
+            return Ok(None);
+        }
         match options.effort {
             Effort::Few => Ok(None),
             Effort::Quick => match halving::mesh(self, options, scratch, sink)? {
