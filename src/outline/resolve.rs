@@ -83,46 +83,48 @@ pub(crate) fn resolve_loops(
     winding: Winding,
     keep_collinear: bool,
 ) -> Vec<Vec<DVec2>> {
-    let contours = contours(polygons);
-    let mut options = OverlayOptions::default();
-    options.preserve_input_collinear = keep_collinear;
-    options.preserve_output_collinear = keep_collinear;
-    let count = contours.iter().map(Vec::len).sum();
-    let adapter =
-        FloatPointAdapter::<[f64; 2], i64>::with_iter_conservative(contours.iter().flatten());
     let rule = match winding {
         Winding::Rule(FillRule::NonZero) => OverlayRuleOfFill::NonZero,
         Winding::Rule(FillRule::EvenOdd) => OverlayRuleOfFill::EvenOdd,
         Winding::Positive => OverlayRuleOfFill::Positive,
     };
-    FloatOverlay::new_custom(adapter, options, Default::default(), count)
-        .unsafe_add_source(&contours, ShapeType::Subject)
-        .overlay(OverlayRule::Subject, rule)
-        .into_iter()
-        .flatten()
-        .map(|contour| contour.into_iter().map(DVec2::from_array).collect())
-        .collect()
+    overlay(polygons, &[], OverlayRule::Subject, rule, keep_collinear)
 }
 
 /// The loops of what two sets of loops both cover, each of them as [`resolve_loops`] gives them.
 pub(crate) fn intersect_loops(a: &[Vec<DVec2>], b: &[Vec<DVec2>]) -> Vec<Vec<DVec2>> {
-    let (a, b) = (contours(a), contours(b));
-    let count = a.iter().chain(&b).map(Vec::len).sum();
-    let points = a.iter().chain(&b).flatten();
-    let adapter = FloatPointAdapter::<[f64; 2], i64>::with_iter_conservative(points);
-    FloatOverlay::new_custom(
-        adapter,
-        OverlayOptions::default(),
-        Default::default(),
-        count,
+    overlay(
+        a,
+        b,
+        OverlayRule::Intersect,
+        OverlayRuleOfFill::NonZero,
+        false,
     )
-    .unsafe_add_source(&a, ShapeType::Subject)
-    .unsafe_add_source(&b, ShapeType::Clip)
-    .overlay(OverlayRule::Intersect, OverlayRuleOfFill::NonZero)
-    .into_iter()
-    .flatten()
-    .map(|contour| contour.into_iter().map(DVec2::from_array).collect())
-    .collect()
+}
+
+/// What a rule leaves of loops and others, on a grid over them all.
+fn overlay(
+    subject: &[Vec<DVec2>],
+    clip: &[Vec<DVec2>],
+    rule: OverlayRule,
+    winding: OverlayRuleOfFill,
+    keep_collinear: bool,
+) -> Vec<Vec<DVec2>> {
+    let mut options = OverlayOptions::default();
+    options.preserve_input_collinear = keep_collinear;
+    options.preserve_output_collinear = keep_collinear;
+    let (subject, clip) = (contours(subject), contours(clip));
+    let all = subject.iter().chain(&clip);
+    let count = all.clone().map(Vec::len).sum();
+    let adapter = FloatPointAdapter::<[f64; 2], i64>::with_iter_conservative(all.flatten());
+    FloatOverlay::new_custom(adapter, options, Default::default(), count)
+        .unsafe_add_source(&subject, ShapeType::Subject)
+        .unsafe_add_source(&clip, ShapeType::Clip)
+        .overlay(rule, winding)
+        .into_iter()
+        .flatten()
+        .map(|contour| contour.into_iter().map(DVec2::from_array).collect())
+        .collect()
 }
 
 fn contours(polygons: &[Vec<DVec2>]) -> Vec<Vec<[f64; 2]>> {
