@@ -308,6 +308,15 @@ pub(crate) fn within(field: &'static str, value: f64, min: f64, max: f64) -> Res
     Ok(value)
 }
 
+/// Checks that nothing is seen through a colour of such an alpha.
+pub(crate) fn opaque(field: &'static str, alpha: u8) -> Result<()> {
+    if alpha == u8::MAX {
+        Ok(())
+    } else {
+        Err(Error::NotOpaque { field, alpha })
+    }
+}
+
 fn finite(field: &'static str, value: f64) -> Result<f64> {
     if value.is_finite() {
         Ok(value)

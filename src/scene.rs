@@ -82,12 +82,7 @@ impl Scene {
     /// # Errors
     /// [`Error::NotOpaque`] for a colour whose alpha is not 255.
     pub fn with_background(mut self, background: Color) -> Result<Self> {
-        if background.a < 255 {
-            return Err(Error::NotOpaque {
-                field: "background",
-                alpha: background.a,
-            });
-        }
+        error::opaque("background", background.a)?;
         self.background = background;
         Ok(self)
     }

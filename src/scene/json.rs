@@ -16,7 +16,7 @@ use self::members::Members;
 use self::optional::some;
 use self::part::Part;
 use super::{Overlap, Scene};
-use crate::error::{Error, Result};
+use crate::error::{self, Result};
 use crate::image::Image;
 use crate::limits::{Limits, at_most};
 use crate::tone::{Blending, Color, Tone};
@@ -180,10 +180,8 @@ impl Scene {
             let parsed: Color = value
                 .parse()
                 .map_err(|error| color.refuse("shadow_color", &error))?;
-            if parsed.a < 255 {
-                let (field, alpha) = ("shadow_color", parsed.a);
-                return Err(color.refuse(field, &Error::NotOpaque { field, alpha }));
-            }
+            error::opaque("shadow_color", parsed.a)
+                .map_err(|error| color.refuse("shadow_color", &error))?;
             tone = tone.with_color(parsed);
         }
         if let Some(blending) = fields.blending.map(part) {
@@ -227,6 +225,7 @@ impl Scene {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::error::Error;
     use crate::shape::Shape;
 
     fn scene(surface: &str) -> Result<Scene> {
