@@ -58,6 +58,41 @@ impl Turn {
     }
 }
 
+/// A turn as wide as the pen, counted from where it is.
+struct Corner<'a> {
+    before: &'a Line,
+    after: &'a Line,
+    at: DVec2,
+    turn: Turn,
+    /// How far to the left the outer side is.
+    side: f64,
+    /// Where that ends along the line before and begins along the one after.
+    ends: [DVec2; 2],
+    /// Where both would meet.
+    tip: DVec2,
+}
+
+impl<'a> Corner<'a> {
+    fn new(before: &'a Line, after: &'a Line, half: f64) -> Self {
+        let turn = Turn::new(before, after);
+        // Of a turn right back it is the sign of 0 that says on which side it is.
+        let side = if turn.across.is_sign_negative() {
+            half
+        } else {
+            -half
+        };
+        Self {
+            before,
+            after,
+            at: after.from,
+            side,
+            ends: [before, after].map(|line| side * line.along.perp()),
+            tip: turn.middle * (side / turn.cos_squared),
+            turn,
+        }
+    }
+}
+
 /// The vertices of the two sides of a way, both in its direction, and what else the pen covers in its bends.
 #[derive(Default)]
 struct Sides {
@@ -205,62 +240,80 @@ impl Pen {
         sides: &mut Sides,
         count: &mut usize,
     ) -> Result<()> {
-        let at = after.from;
-        let turn = Turn::new(before, after);
-        // Of a turn right back it is the sign of 0 that says on which side it is.
-        let (outer, inner, side) = if turn.across.is_sign_negative() {
-            (&mut sides.left, &mut sides.right, self.half)
+        let corner = Corner::new(before, after, self.half);
+        let (outer, inner) = if corner.side > 0.0 {
+            (&mut sides.left, &mut sides.right)
         } else {
-            (&mut sides.right, &mut sides.left, -self.half)
+            (&mut sides.right, &mut sides.left)
         };
-        let corners = [side * before.along.perp(), side * after.along.perp()];
-        let tip = turn.middle * (side / turn.cos_squared);
-        let join = if after.bends {
+        self.outside(&corner, outer, count)?;
+        let wedge = self.inside(&corner, inner, count)?;
+        sides.wedges.extend(wedge);
+        Ok(())
+    }
+
+    /// The join of a corner, on its outer side.
+    fn outside(&self, corner: &Corner, out: &mut Vec<DVec2>, count: &mut usize) -> Result<()> {
+        let &Corner { at, ends, .. } = corner;
+        let join = if corner.after.bends {
             LineJoin::Round
         } else {
             self.join
         };
         let is_pointed = match join {
-            LineJoin::Miter => turn.cos_squared >= self.least,
-            LineJoin::Round => self.is_slight(&turn),
+            LineJoin::Miter => corner.turn.cos_squared >= self.least,
+            LineJoin::Round => self.is_slight(&corner.turn),
             LineJoin::Bevel => false,
         };
         if is_pointed {
-            outer.push(at + tip);
+            out.push(at + corner.tip);
         } else if join == LineJoin::Round {
-            self.round(at, corners[0], turn.angle(), outer, count)?;
+            self.round(at, ends[0], corner.turn.angle(), out, count)?;
         } else {
-            outer.extend(corners.map(|corner| at + corner));
-        }
-        // The sides meet where neither line needs more than half of its length for it. Elsewhere they go by the way itself, as their
-        // quadrilaterals do. Where a curve ends its last line is cut to where the curve heads.
-        let back = self.back(&turn);
-        let (meeting, back) = match (before.is_turn(), after.is_turn()) {
-            (false, false) => (tip, back),
-            (true, false) if after.bends => (corners[0], 2.0 * back),
-            (false, true) if after.bends => (corners[1], 2.0 * back),
-            _ => (tip, f64::INFINITY),
-        };
-        if back < before.room().min(after.room()) && SHARPEST * turn.cos_squared >= 1.0 {
-            inner.push(at - meeting);
-        } else {
-            inner.extend([at - corners[0], at, at - corners[1]]);
-            // In a bend much tighter than the pen is wide its inner end sweeps back over what neither line's quadrilateral covers.
-            let swept = corners[0].distance(corners[1]);
-            if after.bends && swept > before.length() + after.length() {
-                let mut wedge = vec![at];
-                if self.is_slight(&turn) {
-                    wedge.extend(corners.map(|corner| at - corner));
-                } else {
-                    self.round(at, -corners[0], turn.angle(), &mut wedge, count)?;
-                }
-                if side > 0.0 {
-                    wedge.reverse();
-                }
-                sides.wedges.push(wedge);
-            }
+            out.extend(ends.map(|end| at + end));
         }
         Ok(())
+    }
+
+    /// Where the sides meet on a corner's inner side, or the way by it where they do not. Gives what is covered besides.
+    fn inside(
+        &self,
+        corner: &Corner,
+        out: &mut Vec<DVec2>,
+        count: &mut usize,
+    ) -> Result<Option<Vec<DVec2>>> {
+        let &Corner { at, ends, .. } = corner;
+        let (before, after, turn) = (corner.before, corner.after, &corner.turn);
+        // The sides meet where neither line needs more than half of its length for it. Elsewhere they go by the way itself, as their
+        // quadrilaterals do. Where a curve ends its last line is cut to where the curve heads.
+        let back = self.back(turn);
+        let (meeting, back) = match (before.is_turn(), after.is_turn()) {
+            (false, false) => (corner.tip, back),
+            (true, false) if after.bends => (ends[0], 2.0 * back),
+            (false, true) if after.bends => (ends[1], 2.0 * back),
+            _ => (corner.tip, f64::INFINITY),
+        };
+        if back < before.room().min(after.room()) && SHARPEST * turn.cos_squared >= 1.0 {
+            out.push(at - meeting);
+            return Ok(None);
+        }
+        out.extend([at - ends[0], at, at - ends[1]]);
+        // In a bend much tighter than the pen is wide its inner end sweeps back over what neither line's quadrilateral covers.
+        let swept = ends[0].distance(ends[1]);
+        let is_tight = after.bends && swept > before.length() + after.length();
+        if !is_tight {
+            return Ok(None);
+        }
+        let mut wedge = vec![at];
+        if self.is_slight(turn) {
+            wedge.extend(ends.map(|end| at - end));
+        } else {
+            self.round(at, -ends[0], turn.angle(), &mut wedge, count)?;
+        }
+        if corner.side > 0.0 {
+            wedge.reverse();
+        }
+        Ok(Some(wedge))
     }
 
     /// An arc about a point from `start` (counted from it), as the tips of lines that touch it.
