@@ -6,7 +6,9 @@ mod cut;
 use boxes::{Boxes, Extent};
 use glam::DVec2;
 
-use super::{FACET, ShadowMesh, projection_circles, tangent_loops};
+use super::ShadowMesh;
+use super::skeleton::FACET;
+use super::tangents::{projection_circles, tangent_loops};
 use crate::error::{self, Result};
 use crate::light::Projection;
 use crate::outline::{Edge, sides};

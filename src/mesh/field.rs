@@ -2,8 +2,18 @@
 
 use glam::DVec2;
 
-use super::cells::Cells;
+use super::cells::{Cells, NOISE};
+use super::lighten::lighten;
 use super::tilted::TiltedCells;
+use crate::outline::{Edge, Outline};
+use crate::shadow::Shadow;
+
+/// The part of the tolerance that a strip of chords across a disc, and lines in place of runs of them, may each use up where
+/// errors are measured.
+pub(super) const FIELD_SHARE: f64 = 0.02;
+
+/// Both of them, and the strips all along the disc's edge where a circle is as large as the disc: π times one across.
+pub(super) const CURVED: f64 = 4.2;
 
 /// The density at any point of one shadow.
 pub(super) enum Field {
@@ -36,5 +46,25 @@ impl Field {
             Self::Level(cells) => cells.at_all(points, densities),
             Self::Tilted { cells, .. } => cells.at_all(points, densities),
         }
+    }
+}
+
+impl Shadow {
+    /// What errors are measured against, about a centre, and by how much (density) it may itself be off.
+    pub(super) fn field(&self, outline: &Outline, levels: f64, center: DVec2) -> (Field, f64) {
+        let radius = self.radius();
+        let share = FIELD_SHARE * levels;
+        let curved = !self.is_fixed() || outline.edges().any(|e| matches!(e, Edge::Arc(_)));
+        let unsure = if curved { CURVED * share / 255.0 } else { 0.0 } + NOISE;
+        let mut loops = self.polygons_within(share, 0.0);
+        // What is left out of many at once adds up.
+        let lighter = share / self.crowding(0.0, true) / 255.0;
+        for points in &mut loops {
+            for point in &mut *points {
+                *point -= center;
+            }
+            *points = lighten(points, radius, lighter);
+        }
+        (Field::Level(Cells::new(&loops, radius)), unsure)
     }
 }

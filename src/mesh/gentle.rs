@@ -19,10 +19,11 @@ use self::curve::Curve;
 use self::strips::Strips;
 use super::field::Field;
 use super::profile::{Knot, Pieces, Profile};
+use super::rounding::{NARROWEST, rounding_levels, step};
 use super::samples::Samples;
 use super::search;
 use super::strips::join::RingVertex;
-use super::{MeshOptions, MeshVertex, NARROWEST, ShadowMesh, rounding_levels, step};
+use super::{MeshOptions, MeshVertex, ShadowMesh};
 use crate::outline::Outline;
 use crate::shadow::Shadow;
 

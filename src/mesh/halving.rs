@@ -26,9 +26,8 @@ use self::folds::{Folds, Sides};
 use self::halves::Halves;
 use self::tips::Tip;
 use self::tube::Tube;
-use super::{
-    Effort, MeshOptions, MeshQuality, MeshSink, MeshVertex, Profile, rounding_levels, step,
-};
+use super::rounding::{rounding_levels, step};
+use super::{Effort, MeshOptions, MeshQuality, MeshSink, MeshVertex, Profile};
 use crate::density::tiles::{self, Lattice, Tiles};
 use crate::error::Result;
 use crate::outline::{self, Edge};

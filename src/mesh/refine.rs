@@ -13,11 +13,11 @@ use spade::{FloatTriangulation, Point2, Triangulation, mitigate_underflow};
 
 use super::field::Field;
 use super::measure::{Assessment, Measure};
-use super::profile::Profile;
+use super::profile::{Knot, Profile};
 use super::regions::{Face, Region, Triangles, Vertex, faces};
 use super::settle::settle;
 use super::thin::{Corner, TRIED, Thinning, Triangle};
-use super::{Effort, Incomplete, MeshOptions, MeshVertex, Ring, ShadowMesh};
+use super::{Effort, Incomplete, MeshOptions, MeshVertex, ShadowMesh};
 use crate::outline::sides;
 
 /// Rounds of refinement at most. Each halves the larger triangles: the finest tolerance takes about 12; but the last vertices between a
@@ -44,6 +44,9 @@ const FRAME: f64 = 4.0;
 /// The part of the tolerance that is left to interpolation at least, however little rounding leaves: what is above the
 /// tolerance then is reported.
 const LEAST_SHARE: f64 = 0.25;
+
+/// A closed loop of vertices at one distance from the outline.
+pub(super) type Ring = (Knot, Vec<Vec<DVec2>>);
 
 pub(super) struct Refinement {
     measure: Measure,

@@ -20,9 +20,13 @@ use glam::DVec2;
 
 use self::build::{Builder, Span, Template};
 use self::corner::Corner;
-use super::{MeshSink, MeshVertex, power_of_two_below};
+use super::profile::Profile;
+use super::rounding::{power_of_two_below, rounding_levels, step};
+use super::{MeshOptions, MeshQuality, MeshSink, MeshVertex};
 use crate::density::rounded::Rounded;
 use crate::error::Result;
+use crate::scratch::Scratch;
+use crate::shadow::Shadow;
 
 /// Templates that are kept: enough for corners that rise from next to the ground to high above it, in some megabytes.
 const KEPT: usize = 64;
@@ -37,6 +41,50 @@ pub(crate) struct StripScratch {
     /// How often a template was there, and how often one had to be made.
     pub(super) hits: u64,
     pub(super) misses: u64,
+}
+
+/// The part of the tolerance that strips leave to the rounding of their vertices, and the most that they do where that takes more: a
+/// triangulation would take a hundred times as long.
+const ROUNDING_SHARE: f64 = 1.0 / 256.0;
+const MOST_ROUNDING: f64 = 0.25;
+
+impl Shadow {
+    /// The mesh in strips, if the shadow is one of those that have them.
+    pub(super) fn strips(
+        &self,
+        options: &MeshOptions,
+        scratch: &mut Scratch,
+        sink: &mut impl MeshSink,
+    ) -> Result<Option<MeshQuality>> {
+        let radius = self.radius();
+        let disc = options.profile == Profile::Disc && radius > 0.0;
+        let Some(rounded) = self.rounded().filter(|_| disc) else {
+            return Ok(None);
+        };
+        let step = step(rounded.min, rounded.max);
+        let Some(strips) = Strips::of(&rounded, radius) else {
+            return Ok(None);
+        };
+        let levels = options.tolerance.as_levels();
+        let rounding = rounding_levels(step, radius);
+        // In powers of two, so that shadows at other places go by the same template.
+        let share = if rounding > levels * ROUNDING_SHARE {
+            2.0 * power_of_two_below(rounding)
+        } else {
+            levels * ROUNDING_SHARE
+        };
+        if share > levels * MOST_ROUNDING {
+            return Ok(None);
+        }
+        let error = strips.mesh(
+            levels - share,
+            step,
+            options.max_vertices,
+            &mut scratch.meshes.strips,
+            sink,
+        )?;
+        Ok(error.map(|error| MeshQuality::new(error + rounding, None)))
+    }
 }
 
 /// A rounded rectangle of which strips can be made.

@@ -10,7 +10,7 @@
 use glam::DVec2;
 use libm::{atan2, cos, sin, sqrt};
 
-use crate::outline::{Winding, resolve_loops};
+use crate::outline::{Outline, Winding, resolve_loops};
 use crate::path::arc_steps;
 
 /// The light's disc as seen on the receiver through a vertex of the caster.
@@ -18,6 +18,33 @@ use crate::path::arc_steps;
 pub(crate) struct ProjectionCircle {
     pub(crate) center: DVec2,
     pub(crate) radius: f64,
+}
+
+/// Vertices nearer to one another than this, over the penumbra radius, are one: where paths cross they come twice, a rounding error apart,
+/// and the line from one to the other leads anywhere.
+const ONE_VERTEX: f64 = 1e-9;
+
+/// The circles round the vertices of an outline that is seen through one radius everywhere.
+pub(super) fn projection_circles(
+    outline: &Outline,
+    radius: f64,
+    flatness: f64,
+) -> Vec<Vec<ProjectionCircle>> {
+    let circle = |center| ProjectionCircle { center, radius };
+    let is_one = |a: DVec2, b: DVec2| (a - b).length() <= ONE_VERTEX * radius;
+    let mut polygons = outline.polygons(flatness);
+    for points in &mut polygons {
+        points.dedup_by(|next, point| is_one(*next, *point));
+        while let [first, .., last] = points[..]
+            && is_one(first, last)
+        {
+            points.pop();
+        }
+    }
+    polygons
+        .into_iter()
+        .map(|points| points.into_iter().map(circle).collect())
+        .collect()
 }
 
 /// The loops along the tangents to the circles of `t` times their radius: outside of the outline for t < 0, inside for

@@ -12,14 +12,13 @@ pub(super) use cells::TiltedCells;
 use fewer::{fewer, fewer_within};
 
 use super::cells::NOISE;
-use super::field::Field;
+use super::field::{CURVED, FIELD_SHARE, Field};
 use super::profile::Knot;
 use super::refine::Refinement;
+use super::rounding::{NARROWEST, rounding_levels, step};
+use super::skeleton::{pieces, ring_flatness};
 use super::tangents::{ProjectionCircle, tangent_loops, tangent_normal};
-use super::{
-    CURVED, FIELD_SHARE, Incomplete, MeshOptions, NARROWEST, ShadowMesh, pieces, ring_flatness,
-    rounding_levels, step, umbra,
-};
+use super::{Incomplete, MeshOptions, ShadowMesh, umbra};
 use crate::error::MAX_COORDINATE;
 use crate::outline::{Winding, resolve_loops, sides};
 use crate::path::{FillRule, arc_steps};

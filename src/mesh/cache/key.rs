@@ -4,7 +4,8 @@ use core::f64::consts::{PI, SQRT_2, TAU};
 
 use glam::DVec2;
 
-use crate::mesh::{MeshOptions, Profile, power_of_two_below};
+use crate::mesh::rounding::power_of_two_below;
+use crate::mesh::{MeshOptions, Profile};
 use crate::outline::Edge;
 use crate::path::{FillRule, Segment};
 use crate::shadow::Shadow;
