@@ -4,6 +4,8 @@ mod arc;
 mod flatten;
 mod parts;
 
+use core::mem;
+
 use glam::{DAffine2, DVec2};
 
 pub(crate) use arc::{EllipseArc, arc_steps};
@@ -220,6 +222,13 @@ fn point(p: [f32; 2]) -> DVec2 {
 impl Contour {
     pub(crate) fn end(&self) -> DVec2 {
         self.segments.last().map_or(self.start, Segment::end)
+    }
+
+    /// Its segments, each with where it begins.
+    pub(crate) fn walk(&self) -> impl Iterator<Item = (DVec2, &Segment)> {
+        self.segments.iter().scan(self.start, |end, segment| {
+            Some((mem::replace(end, segment.end()), segment))
+        })
     }
 
     pub(crate) fn is_straight(&self) -> bool {

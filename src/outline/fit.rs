@@ -83,12 +83,10 @@ impl Fineness {
 
 /// Pushes a contour's edges, closed: lines and circular arcs as they are, and fits of other curves.
 pub(super) fn push_contour<F: Fit>(contour: &Contour, fineness: &Fineness, out: &mut Vec<Edge>) {
-    let mut from = contour.start;
-    for segment in &contour.segments {
+    for (from, segment) in contour.walk() {
         push_segment::<F>(from, segment, fineness, out);
-        from = segment.end();
     }
-    push_line(from, contour.start, out);
+    push_line(contour.end(), contour.start, out);
 }
 
 fn push_segment<F: Fit>(from: DVec2, segment: &Segment, fineness: &Fineness, out: &mut Vec<Edge>) {

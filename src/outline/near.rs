@@ -10,8 +10,7 @@ impl Contour {
     /// Pushes the contour's edges, closed: lines and circular arcs as they are, other curves as lines within `flatness` of
     /// them. `vertices` is memory.
     pub(crate) fn near(&self, flatness: f64, vertices: &mut Vec<DVec2>, out: &mut Vec<Edge>) {
-        let mut from = self.start;
-        for segment in &self.segments {
+        for (mut from, segment) in self.walk() {
             match segment {
                 Segment::Arc(arc) if let Some(arcs) = circular(from, arc) => {
                     out.extend(arcs.map(Edge::Arc));
@@ -25,8 +24,7 @@ impl Contour {
                     }
                 }
             }
-            from = segment.end();
         }
-        fit::push_line(from, self.start, out);
+        fit::push_line(self.end(), self.start, out);
     }
 }

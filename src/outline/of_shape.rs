@@ -5,6 +5,7 @@ use core::f64::consts::PI;
 use glam::DVec2;
 use libm::atan2;
 
+use super::fit::push_line;
 use super::{Arc, Edge, Line, Outline, Winding, closed_lines, resolve};
 use crate::path::{EllipseArc, Segment};
 use crate::shape::{Cover, Shape};
@@ -27,21 +28,14 @@ impl Outline {
         let mut loops = Vec::with_capacity(shape.contours.len());
         for contour in &shape.contours {
             let mut edges = Vec::with_capacity(contour.segments.len() + 1);
-            let mut from = contour.start;
-            for segment in &contour.segments {
+            for (from, segment) in contour.walk() {
                 match *segment {
                     Segment::Line(to) => edges.push(Edge::Line(Line { from, to })),
                     Segment::Arc(arc) => edges.extend(circular(from, &arc)?.map(Edge::Arc)),
                     Segment::Quad(..) | Segment::Cubic(..) => return None,
                 }
-                from = segment.end();
             }
-            if from != contour.start {
-                edges.push(Edge::Line(Line {
-                    from,
-                    to: contour.start,
-                }));
-            }
+            push_line(contour.end(), contour.start, &mut edges);
             loops.push(edges);
         }
         Some(Self { loops }.canonical())

@@ -11,10 +11,8 @@ impl Contour {
     /// Each curve is cut the same way from either end, so that a contour and its reverse have the same vertices.
     pub(crate) fn flatten(&self, flatness: f64) -> Vec<DVec2> {
         let mut vertices = vec![self.start];
-        let mut from = self.start;
-        for segment in &self.segments {
+        for (from, segment) in self.walk() {
             segment.flatten(from, flatness, &mut vertices);
-            from = segment.end();
         }
         vertices.dedup();
         while vertices.len() > 1 && vertices.first() == vertices.last() {
@@ -27,13 +25,8 @@ impl Contour {
 /// No fewer lines than flattening makes of contours (Wang 1984: of a curve's second differences).
 pub(crate) fn lines(contours: &[Contour], flatness: f64) -> usize {
     let of_contour = |contour: &Contour| {
-        let mut from = contour.start;
-        let of_segment = |segment: &Segment| {
-            let lines = segment.lines(from, flatness);
-            from = segment.end();
-            lines
-        };
-        contour.segments.iter().map(of_segment).sum::<f64>()
+        let of_segment = |(from, segment): (DVec2, &Segment)| segment.lines(from, flatness);
+        contour.walk().map(of_segment).sum::<f64>()
     };
     contours.iter().map(of_contour).sum::<f64>() as usize
 }

@@ -49,8 +49,7 @@ impl Shadow {
             .flatten()
             .flat_map(|shape| &shape.contours)
         {
-            let mut from = contour.start;
-            for segment in &contour.segments {
+            for (from, segment) in contour.walk() {
                 census.pieces += 1.0;
                 let length = (segment.end() - from).length();
                 if !simple {
@@ -63,7 +62,6 @@ impl Shadow {
                     census.curves += 1.0;
                     census.curve_length += length;
                 }
-                from = segment.end();
             }
         }
         census.size = self.hull().map_or(DVec2::ZERO, |(min, max)| max - min);

@@ -26,18 +26,15 @@ pub(super) fn push_curves<'a>(
 ) {
     let mut ends = Vec::new();
     for contour in shapes.flat_map(|shape| &shape.contours) {
-        let mut from = contour.start;
-        for segment in &contour.segments {
+        for (mut from, segment) in contour.walk() {
             if !matches!(segment, Segment::Line(_)) {
                 ends.clear();
                 segment.flatten(from, COARSE * radius, &mut ends);
-                let mut start = from;
                 for &end in &ends {
-                    chords.push([start, end]);
-                    start = end;
+                    chords.push([from, end]);
+                    from = end;
                 }
             }
-            from = segment.end();
         }
     }
 }

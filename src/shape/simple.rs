@@ -71,17 +71,13 @@ fn enclosing(contour: &Contour) -> Option<Contour> {
 
 /// The contour from its end to its start.
 fn reversed(contour: &Contour) -> Contour {
-    let mut to = contour.start;
-    let turned = |segment: &Segment| {
-        let to = core::mem::replace(&mut to, segment.end());
-        match *segment {
-            Segment::Line(_) => Segment::Line(to),
-            Segment::Quad(a, _) => Segment::Quad(a, to),
-            Segment::Cubic(a, b, _) => Segment::Cubic(b, a, to),
-            Segment::Arc(arc) => Segment::Arc(arc.reversed(to)),
-        }
+    let turned = |(to, segment): (DVec2, &Segment)| match *segment {
+        Segment::Line(_) => Segment::Line(to),
+        Segment::Quad(a, _) => Segment::Quad(a, to),
+        Segment::Cubic(a, b, _) => Segment::Cubic(b, a, to),
+        Segment::Arc(arc) => Segment::Arc(arc.reversed(to)),
     };
-    let mut segments: Vec<Segment> = contour.segments.iter().map(turned).collect();
+    let mut segments: Vec<Segment> = contour.walk().map(turned).collect();
     segments.reverse();
     Contour {
         start: contour.end(),

@@ -296,20 +296,14 @@ mod tests {
     fn covers(shape: &Shape, at: DVec2) -> bool {
         let mut winding = 0;
         for contour in &shape.contours {
-            let mut from = contour.start;
-            for to in contour
-                .segments
-                .iter()
-                .map(Segment::end)
-                .chain([contour.start])
-            {
+            let lines = contour.walk().map(|(from, line)| (from, line.end()));
+            for (from, to) in lines.chain([(contour.end(), contour.start)]) {
                 let left = (to - from).perp_dot(at - from) > 0.0;
                 match (from.y <= at.y, to.y <= at.y) {
                     (true, false) if left => winding += 1,
                     (false, true) if !left => winding -= 1,
                     _ => {}
                 }
-                from = to;
             }
         }
         winding != 0

@@ -41,22 +41,12 @@ fn lengths(shadow: &Shadow) -> impl Iterator<Item = f64> {
         .flatten()
         .flat_map(|shape| &shape.contours);
     let curved = contours.flat_map(|contour| {
-        let mut from = contour.start;
-        let closing = contour
-            .segments
-            .last()
-            .map_or(0.0, |last| (last.end() - from).length());
-        let segments = contour.segments.iter().map(move |segment| {
-            let start = from;
-            from = segment.end();
-            match *segment {
-                Segment::Line(to) => (to - start).length(),
-                Segment::Quad(a, to) => (a - start).length() + (to - a).length(),
-                Segment::Cubic(a, b, to) => {
-                    (a - start).length() + (b - a).length() + (to - b).length()
-                }
-                Segment::Arc(arc) => arc.sweep.abs() * (arc.u.length() + arc.v.length()),
-            }
+        let closing = (contour.end() - contour.start).length();
+        let segments = contour.walk().map(|(from, segment)| match *segment {
+            Segment::Line(to) => (to - from).length(),
+            Segment::Quad(a, to) => (a - from).length() + (to - a).length(),
+            Segment::Cubic(a, b, to) => (a - from).length() + (b - a).length() + (to - b).length(),
+            Segment::Arc(arc) => arc.sweep.abs() * (arc.u.length() + arc.v.length()),
         });
         segments.chain([closing])
     });

@@ -57,13 +57,12 @@ impl Line {
 /// The way along a contour, and whether it ends where it begins. A contour without length is a dot, and heads along x, as in SVG.
 pub(super) fn way(contour: &Contour, pen: &Pen) -> (Vec<Line>, bool) {
     let mut way = Vec::new();
-    let mut from = contour.start;
-    for segment in &contour.segments {
+    for (from, segment) in contour.walk() {
         append(&mut way, from, segment, pen.flatness);
-        from = segment.end();
     }
     if contour.closed {
-        append(&mut way, from, &Segment::Line(contour.start), pen.flatness);
+        let closing = Segment::Line(contour.start);
+        append(&mut way, contour.end(), &closing, pen.flatness);
     }
     if way.is_empty() {
         return (vec![Line::turn(contour.start, DVec2::X, false)], false);
