@@ -312,6 +312,17 @@ pub(crate) fn closed_lines(polygon: &[DVec2]) -> Vec<Edge> {
         .collect()
 }
 
+/// How far along a line, from 0 to 1, is what of it is nearest to a point: 0 where it has no length.
+pub(crate) fn nearest_share(from: DVec2, to: DVec2, point: DVec2) -> f64 {
+    let along = to - from;
+    let share = (point - from).dot(along) / along.length_squared();
+    if share.is_nan() {
+        0.0
+    } else {
+        share.clamp(0.0, 1.0)
+    }
+}
+
 /// How often closed lines wind round a point.
 pub(crate) fn winding(lines: impl Iterator<Item = (DVec2, DVec2)>, point: DVec2) -> i32 {
     lines

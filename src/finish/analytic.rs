@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::Rim;
-use crate::outline::{Edge, Outline};
+use crate::outline::{Edge, Outline, nearest_share};
 use crate::shape::Shape;
 
 /// How far lines may be from curves other than circles, scene units.
@@ -87,11 +87,7 @@ impl RimSurface {
 fn foot_on(edge: &Edge, point: DVec2) -> DVec2 {
     let (from, to) = (edge.from(), edge.to());
     match edge {
-        Edge::Line(_) | Edge::Border(_) => {
-            let along = to - from;
-            let share = (point - from).dot(along) / along.length_squared().max(f64::MIN_POSITIVE);
-            from + along * share.clamp(0.0, 1.0)
-        }
+        Edge::Line(_) | Edge::Border(_) => from + (to - from) * nearest_share(from, to, point),
         Edge::Arc(arc) => {
             let spoke = point - arc.center;
             if spoke != DVec2::ZERO && arc.has(spoke) {

@@ -4,6 +4,7 @@ use super::view::{View, holds};
 use super::{Claim, Family, Parameter, Technique};
 use crate::error::Result;
 use crate::grid::Grid;
+use crate::outline::nearest_share;
 use crate::scratch::Scratch;
 use crate::shadow::Shadow;
 
@@ -52,13 +53,7 @@ impl Technique for Smoothstep {
         view.draw(grid, half, densities, |center, _, lines| {
             let mut nearest = half * half;
             for &(a, b) in lines {
-                let along = b - a;
-                let share = (center - a).dot(along) / along.length_squared();
-                let foot = if share.is_nan() {
-                    a
-                } else {
-                    a + along * share.clamp(0.0, 1.0)
-                };
+                let foot = a + (b - a) * nearest_share(a, b, center);
                 nearest = nearest.min((center - foot).length_squared());
             }
             let inside = if holds(lines, center) { 1.0 } else { -1.0 };

@@ -11,7 +11,7 @@ use super::skeleton::FACET;
 use super::tangents::{projection_circles, tangent_loops};
 use crate::error::{self, Result};
 use crate::light::Projection;
-use crate::outline::{Edge, sides};
+use crate::outline::{Edge, nearest_share, sides};
 use crate::shadow::Shadow;
 use crate::shape::Shape;
 
@@ -158,14 +158,7 @@ fn crosses([a, b]: &[DVec2; 2], [c, d]: &[DVec2; 2]) -> bool {
 
 /// From a point to the nearest of a line.
 fn distance(point: DVec2, [from, to]: &[DVec2; 2]) -> f64 {
-    let along = to - from;
-    let length = along.length_squared();
-    let share = if length > 0.0 {
-        ((point - from).dot(along) / length).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
-    (point - from - along * share).length()
+    (point - from - (to - from) * nearest_share(*from, *to, point)).length()
 }
 
 #[cfg(test)]

@@ -149,7 +149,7 @@ mod tests {
     use glam::DVec2;
 
     use super::*;
-    use crate::outline::Outline;
+    use crate::outline::{Outline, nearest_share};
 
     const JOINS: [LineJoin; 3] = [LineJoin::Miter, LineJoin::Round, LineJoin::Bevel];
     const CAPS: [LineCap; 3] = [LineCap::Butt, LineCap::Square, LineCap::Round];
@@ -491,9 +491,8 @@ mod tests {
                 assert!(covers(&shape, beside), "case {case}: {beside} of {path:?}");
                 let at = from + 4.0 * half * (DVec2::new(random(), random()) - 0.5);
                 let distance = points.windows(2).map(|line| {
-                    let along = line[1] - line[0];
-                    let share = (at - line[0]).dot(along) / along.length_squared();
-                    at.distance(line[0] + share.clamp(0.0, 1.0) * along)
+                    let share = nearest_share(line[0], line[1], at);
+                    at.distance(line[0].lerp(line[1], share))
                 });
                 let nearest = distance.fold(f64::INFINITY, f64::min);
                 assert!(

@@ -5,6 +5,7 @@ use core::f64::consts::PI;
 use glam::DVec2;
 
 use super::projected;
+use crate::outline::nearest_share;
 use crate::tilted::Circle;
 
 /// The most vertices that one line stands for: to try more would take the square of their number.
@@ -60,14 +61,8 @@ pub(super) fn fewer_within(loops: &[Vec<Circle>], most: f64) -> (Vec<Vec<Circle>
 /// How far the disc's points see the line from one circle to another pass a third, in the disc's radii.
 fn passes(from: &Circle, over: &Circle, to: &Circle) -> f64 {
     let [from, over, to] = [from, over, to].map(projected);
-    let way = to.center - from.center;
-    let share = (over.center - from.center).dot(way) / way.length_squared();
-    let share = if share.is_nan() {
-        0.0
-    } else {
-        share.clamp(0.0, 1.0)
-    };
-    let nearest = from.center + way * share;
+    let share = nearest_share(from.center, to.center, over.center);
+    let nearest = from.center + (to.center - from.center) * share;
     let radius = from.radius + (to.radius - from.radius) * share;
     ((nearest - over.center).length() + (radius - over.radius).abs()) / over.radius
 }
