@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 
 use glam::DVec2;
 
-use sums::Sums;
+pub(crate) use sums::Sums;
 
 use crate::error::{self, Error, MAX_PIXELS, Result};
 
@@ -69,14 +69,22 @@ impl Image {
     pub(crate) fn row_sums(&self) -> &Sums {
         let columns = self.size[0] as usize;
         self.rows
-            .get_or_init(|| Sums::of_rows(columns, &self.pixels))
+            .get_or_init(|| Sums::of_rows(columns, self.alphas()))
     }
 
     /// The sums of alpha over rectangles of texels.
     pub(crate) fn area_sums(&self) -> &Sums {
         let columns = self.size[0] as usize;
         self.areas
-            .get_or_init(|| Sums::of_areas(columns, &self.pixels))
+            .get_or_init(|| Sums::of_areas(columns, self.alphas()))
+    }
+
+    /// Each row's alphas, 0 to 1.
+    fn alphas(&self) -> impl ExactSizeIterator<Item = impl Iterator<Item = f64>> {
+        let columns = self.size[0] as usize;
+        let alpha = |pixel: &[u8; 4]| f64::from(pixel[3]) / 255.0;
+        let rows = self.pixels.as_chunks().0.chunks_exact(columns);
+        rows.map(move |row| row.iter().map(alpha))
     }
 }
 

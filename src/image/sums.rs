@@ -1,22 +1,24 @@
-//! Sums of an image's alpha, along rows of texels and over rectangles of them (Crow 1984, "Summed-area tables for texture mapping").
+//! Sums of alpha, along rows of texels and over rectangles of them (Crow 1984, "Summed-area tables for texture mapping").
 
 /// Sums of alpha up to each column and behind the last, in rows of one more than there are columns.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Sums {
     columns: usize,
-    /// Each alpha from 0 to 1.
     table: Vec<f64>,
 }
 
 impl Sums {
-    /// Of each row of texels, from pixels of four bytes, the last of which is alpha.
-    pub(super) fn of_rows(columns: usize, pixels: &[u8]) -> Self {
-        let mut table = Vec::with_capacity(pixels.len() / (4 * columns) * (columns + 1));
-        for row in pixels.chunks_exact(4 * columns) {
+    /// Of each row of texels, from their alphas.
+    pub(crate) fn of_rows<Row: Iterator<Item = f64>>(
+        columns: usize,
+        rows: impl ExactSizeIterator<Item = Row>,
+    ) -> Self {
+        let mut table = Vec::with_capacity(rows.len() * (columns + 1));
+        for row in rows {
             let mut sum = 0.0;
             table.push(sum);
-            for pixel in row.chunks_exact(4) {
-                sum += f64::from(pixel[3]) / 255.0;
+            for alpha in row {
+                sum += alpha;
                 table.push(sum);
             }
         }
@@ -24,17 +26,20 @@ impl Sums {
     }
 
     /// Of all rows above each row, and of all: one more than there are.
-    pub(super) fn of_areas(columns: usize, pixels: &[u8]) -> Self {
-        let mut table = vec![0.0; (pixels.len() / (4 * columns) + 1) * (columns + 1)];
-        let mut above = 0;
-        for row in pixels.chunks_exact(4 * columns) {
+    pub(crate) fn of_areas<Row: Iterator<Item = f64>>(
+        columns: usize,
+        rows: impl ExactSizeIterator<Item = Row>,
+    ) -> Self {
+        let mut table = Vec::with_capacity((rows.len() + 1) * (columns + 1));
+        table.resize(columns + 1, 0.0);
+        for row in rows {
             let mut sum = 0.0;
-            for (column, pixel) in row.chunks_exact(4).enumerate() {
-                sum += f64::from(pixel[3]) / 255.0;
-                let at = above + column + 1;
-                table[at + columns + 1] = table[at] + sum;
+            table.push(sum);
+            for alpha in row {
+                sum += alpha;
+                let above = table[table.len() - columns - 1];
+                table.push(above + sum);
             }
-            above += columns + 1;
         }
         Self { columns, table }
     }
@@ -81,12 +86,9 @@ mod tests {
     #[test]
     fn sums_are_those_of_the_texels() {
         let alphas = [[0_u8, 255, 90], [200, 0, 33]];
-        let pixels: Vec<u8> = alphas
-            .iter()
-            .flatten()
-            .flat_map(|&alpha| [10, 20, 30, alpha])
-            .collect();
-        let (rows, areas) = (Sums::of_rows(3, &pixels), Sums::of_areas(3, &pixels));
+        let of_row = |row: &[u8; 3]| row.map(|alpha| f64::from(alpha) / 255.0).into_iter();
+        let rows = Sums::of_rows(3, alphas.iter().map(of_row));
+        let areas = Sums::of_areas(3, alphas.iter().map(of_row));
         for (x, y) in [(0.0, 0.0), (3.0, 2.0), (1.5, 1.25), (2.2, 0.6), (-4.0, 9.0)] {
             let covered = |from: usize, to: f64| (to - from as f64).clamp(0.0, 1.0);
             let mut sum = 0.0;

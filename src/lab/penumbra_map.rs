@@ -17,6 +17,7 @@ use super::plane::Plane;
 use super::{Claim, Family, Parameter, Technique};
 use crate::error::{self, Result};
 use crate::grid::Grid;
+use crate::image::Sums;
 use crate::scratch::Scratch;
 use crate::shadow::Shadow;
 
@@ -197,7 +198,7 @@ impl PenumbraMap {
 
     /// The average about each of the grid's pixels.
     fn average(&self, map: &Map, grid: &Grid, mut put: impl FnMut(usize, f64)) {
-        let sums = Sums::new(&map.alpha, self.kernel, self.region);
+        let averages = Averages::new(&map.alpha, self.kernel, self.region);
         let margin = map.alpha.margin as f64;
         for y in 0..grid.height() {
             for x in 0..grid.width() {
@@ -206,7 +207,7 @@ impl PenumbraMap {
                 let texel = center.y as usize * map.alpha.width + center.x as usize;
                 let radius = radius(f64::from(map.depth[texel]), map.light_radius).min(WIDEST);
                 let place = y as usize * grid.stride() + x as usize;
-                put(place, sums.average(center, radius).clamp(0.0, 1.0));
+                put(place, averages.average(center, radius).clamp(0.0, 1.0));
             }
         }
     }
@@ -217,40 +218,28 @@ fn radius(depth: f64, light_radius: f64) -> f64 {
     light_radius * (1.0 - depth) / depth
 }
 
-/// A plane summed up along rows, or along rows and columns.
-struct Sums<'a> {
+/// The averages of a plane.
+struct Averages<'a> {
     plane: &'a Plane,
     kernel: Kernel,
     region: Region,
-    /// Of `width + 1` columns; of `height + 1` rows where it is a summed-area table.
-    table: Vec<f64>,
+    /// Of rows for circles, of areas for squares, of nothing for a Gaussian.
+    sums: Sums,
 }
 
-impl<'a> Sums<'a> {
+impl<'a> Averages<'a> {
     fn new(plane: &'a Plane, kernel: Kernel, region: Region) -> Self {
-        let columns = plane.width + 1;
-        let mut table = Vec::new();
-        match (kernel, region) {
-            (Kernel::Gaussian, _) => {}
-            (Kernel::Box, Region::Circle) => {
-                table.reserve(columns * plane.height);
-                for y in 0..plane.height {
-                    push_row(plane.row(y), |_| 0.0, &mut table);
-                }
-            }
-            (Kernel::Box, Region::Square(_)) => {
-                table.resize(columns, 0.0);
-                for y in 0..plane.height {
-                    let above: Vec<f64> = table[y * columns..].to_vec();
-                    push_row(plane.row(y), |x| above[x], &mut table);
-                }
-            }
-        }
+        let rows = (0..plane.height).map(|y| plane.row(y).iter().copied().map(f64::from));
+        let sums = match (kernel, region) {
+            (Kernel::Gaussian, _) => Sums::default(),
+            (Kernel::Box, Region::Circle) => Sums::of_rows(plane.width, rows),
+            (Kernel::Box, Region::Square(_)) => Sums::of_areas(plane.width, rows),
+        };
         Self {
             plane,
             kernel,
             region,
-            table,
+            sums,
         }
     }
 
@@ -267,14 +256,6 @@ impl<'a> Sums<'a> {
         }
     }
 
-    /// The sums up to `x` in row `row` of the table.
-    fn up_to(&self, row: usize, x: f64) -> f64 {
-        let x = x.clamp(0.0, self.plane.width as f64);
-        let low = (x as usize).min(self.plane.width - 1);
-        let row = &self.table[row * (self.plane.width + 1)..][low..low + 2];
-        row[0] + (row[1] - row[0]) * (x - low as f64)
-    }
-
     /// Along a chord in each row of texels.
     fn circle(&self, center: DVec2, radius: f64) -> f64 {
         let first = (center.y - radius - 0.5).ceil().max(0.0) as usize;
@@ -285,7 +266,8 @@ impl<'a> Sums<'a> {
                 break;
             }
             let half = sqrt(radius * radius - dy * dy);
-            sum += self.up_to(row, center.x + half) - self.up_to(row, center.x - half);
+            let row = self.sums.row(row);
+            sum += row.up_to(center.x + half) - row.up_to(center.x - half);
             area += 2.0 * half;
         }
         if area > 0.0 {
@@ -299,12 +281,7 @@ impl<'a> Sums<'a> {
         // A square within a texel is the texel.
         let half = DVec2::splat(side.max(1e-3) / 2.0);
         let (min, max) = (center - half, center + half);
-        let at = |x: f64, y: f64| {
-            let y = y.clamp(0.0, self.plane.height as f64);
-            let low = (y as usize).min(self.plane.height - 1);
-            let (above, below) = (self.up_to(low, x), self.up_to(low + 1, x));
-            above + (below - above) * (y - low as f64)
-        };
+        let at = |x: f64, y: f64| self.sums.up_to(x, y);
         let sum = at(max.x, max.y) - at(min.x, max.y) - at(max.x, min.y) + at(min.x, min.y);
         sum / ((max.x - min.x) * (max.y - min.y))
     }
@@ -346,15 +323,6 @@ impl<'a> Sums<'a> {
         } else {
             0.0
         }
-    }
-}
-
-fn push_row(row: &[f32], above: impl Fn(usize) -> f64, table: &mut Vec<f64>) {
-    table.push(above(0));
-    let mut sum = 0.0;
-    for (x, value) in row.iter().enumerate() {
-        sum += f64::from(*value);
-        table.push(sum + above(x + 1));
     }
 }
 
