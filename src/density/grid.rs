@@ -16,12 +16,14 @@ mod strips;
 mod sums;
 mod weaver;
 
+use core::ops::Range;
+
 use fearless_simd::Simd;
 use glam::DVec2;
 
 use self::strips::BLOCK;
 use self::sums::{SumScratch, SumSource};
-use self::weaver::{Weaver, Woven, WovenLine};
+use self::weaver::{Weaver, Woven};
 use super::cubic;
 use super::frame::Frame;
 use super::rows::{Lattice, Points, Window};
@@ -64,6 +66,29 @@ struct Place {
 }
 
 impl Place {
+    /// Of the columns that a frame shows: whole blocks of the shadow, whatever part of it those are.
+    fn new(frame: &Frame, radius: f64, levels: f64, columns: &Range<i64>) -> Self {
+        let first = columns.start - columns.start % BLOCK as i64;
+        Self {
+            radius,
+            pitch: radius / cubic::steps(levels),
+            phase: frame.phase,
+            first,
+            blocks: ((columns.end - first) as usize).div_ceil(BLOCK),
+        }
+    }
+
+    /// The row and the column of the point that sees an arc of the disc's own radius all at once, if an edge is one.
+    fn tip(&self, edge: &Edge) -> Option<[i64; 2]> {
+        match edge {
+            Edge::Arc(arc) if (arc.radius / self.radius - 1.0).abs() < TIP => {
+                let place = [arc.center.y / self.pitch, arc.center.x - self.phase.x];
+                Some(place.map(|v| v.floor() as i64))
+            }
+            _ => None,
+        }
+    }
+
     /// Its columns in penumbra radii.
     fn lattice(&self) -> Lattice {
         Lattice {
@@ -114,16 +139,7 @@ pub(crate) fn fill<S: Simd>(
             .map(move |edge| edge.mapped(frame.scale / unit, |p| frame.place(p) / unit))
     };
     let levels = options.tolerance.as_levels();
-    let pitch = radius / cubic::steps(levels);
-    // Whole blocks of the shadow, whatever part of it the grid shows.
-    let first = columns.start - columns.start % BLOCK as i64;
-    let place = Place {
-        radius,
-        pitch,
-        phase: frame.phase,
-        first,
-        blocks: ((columns.end - first) as usize).div_ceil(BLOCK),
-    };
+    let place = Place::new(&frame, radius, levels, &columns);
     let Scratch {
         rows: pixel_rows,
         grid: kept,
@@ -131,79 +147,52 @@ pub(crate) fn fill<S: Simd>(
         ..
     } = scratch;
     kept.woven.tips.clear();
-    kept.woven
-        .tips
-        .extend(placed(1.0).filter_map(|edge| match edge {
-            Edge::Arc(arc) if (arc.radius / radius - 1.0).abs() < TIP => {
-                let place = [arc.center.y / pitch, arc.center.x - frame.phase.x];
-                Some(place.map(|v| v.floor() as i64))
-            }
-            _ => None,
-        }));
+    let tips = placed(1.0).filter_map(|edge| place.tip(&edge));
+    kept.woven.tips.extend(tips);
     let width = frame.extent.x - 2.0 * radius;
     let source = SumSource::new(placed(radius), &place, width, &mut kept.sums);
     let mut weaver = Weaver {
         source,
         kept: &mut kept.woven,
         columns: columns.clone(),
-        first,
+        first: place.first,
         blocks: place.blocks,
         next: i64::MIN,
+        cell: None,
         limits: [LIMIT, END_LIMIT].map(|limit| (limit * levels / 255.0) as f32),
-        near: pitch.ceil() as i64,
+        near: place.pitch.ceil() as i64,
     };
     let origin = frame.first[0];
     let pixels = place.lattice();
     let mut loaded = false;
-    let mut cell = None;
     for line in lines {
         let number = (line - frame.first[1]) as u32;
         seen_columns(options.hidden, number, &frame, &columns, wanted);
         if wanted.is_empty() {
             continue;
         }
-        let place = (line as f64 + frame.phase.y + 0.5) / pitch;
-        let knot = place.floor() as i64;
-        weaver.weave_to(simd, knot - 4, knot + 5);
-        if cell != Some(knot) {
-            weaver.find_coarse(simd, knot, cell == Some(knot - 1));
-            cell = Some(knot);
-        }
-        let woven = WovenLine {
-            knot,
-            weights: cubic::weights(place - knot as f64),
-            number,
-            origin,
-        };
+        let y = line as f64 + frame.phase.y + 0.5;
+        let woven = weaver.go_to(simd, y / place.pitch, number, origin);
         for wanted in wanted.iter() {
-            let mut at = wanted.start;
-            for coarse in 0..weaver.kept.coarse.len() {
-                let coarse = weaver.kept.coarse[coarse].clone();
-                let coarse = coarse.start.max(at)..coarse.end.min(wanted.end);
-                if !coarse.is_empty() {
-                    weaver.give(simd, &woven, at..coarse.start, sink);
-                    at = coarse.end;
+            weaver.give_between(simd, &woven, wanted, sink);
+        }
+        if weaver.kept.coarse.is_empty() {
+            continue;
+        }
+        if !loaded {
+            pixel_rows.load(placed(radius), Window::Disc, &Points::CENTER);
+            loaded = true;
+        }
+        pixel_rows.go_to(y / radius, columns.clone(), &pixels, &Points::CENTER);
+        pixel_rows.clear();
+        for coarse in &weaver.kept.coarse {
+            for wanted in wanted.iter() {
+                let part = coarse.start.max(wanted.start)..coarse.end.min(wanted.end);
+                if !part.is_empty() {
+                    pixel_rows.compute(simd, part, &pixels, &Points::CENTER);
                 }
             }
-            weaver.give(simd, &woven, at..wanted.end, sink);
         }
-        if !weaver.kept.coarse.is_empty() {
-            if !loaded {
-                pixel_rows.load(placed(radius), Window::Disc, &Points::CENTER);
-                loaded = true;
-            }
-            let y = (line as f64 + frame.phase.y + 0.5) / radius;
-            pixel_rows.go_to(y, columns.clone(), &pixels, &Points::CENTER);
-            pixel_rows.clear();
-            for coarse in &weaver.kept.coarse {
-                for wanted in wanted.iter() {
-                    let part = coarse.start.max(wanted.start)..coarse.end.min(wanted.end);
-                    if !part.is_empty() {
-                        pixel_rows.compute(simd, part, &pixels, &Points::CENTER);
-                    }
-                }
-            }
-            pixel_rows.give(number, &columns, origin, sink);
-        }
+        pixel_rows.give(number, &columns, origin, sink);
     }
 }

@@ -49,10 +49,10 @@ pub(super) struct Woven {
 /// A line of pixels: the row of the lattice above it, the weights of the four rows about it, its number on the grid and the
 /// column at which the grid begins.
 pub(super) struct WovenLine {
-    pub(super) knot: i64,
-    pub(super) weights: [f32; 4],
-    pub(super) number: u32,
-    pub(super) origin: i64,
+    knot: i64,
+    weights: [f32; 4],
+    number: u32,
+    origin: i64,
 }
 
 /// Goes down the lattice row by row.
@@ -65,6 +65,8 @@ pub(super) struct Weaver<'a> {
     pub(super) blocks: usize,
     /// The next row of the lattice.
     pub(super) next: i64,
+    /// The row below which coarse columns were found last.
+    pub(super) cell: Option<i64>,
     /// How far a density may be from what is foretold, and one of about 0 or 1.
     pub(super) limits: [f32; 2],
     /// So many pixels beside those that are foretold badly are no better.
@@ -72,9 +74,32 @@ pub(super) struct Weaver<'a> {
 }
 
 impl Weaver<'_> {
+    /// Weaves what a line `down` so many rows of the lattice needs, and finds its coarse columns.
+    #[inline(always)]
+    pub(super) fn go_to<S: Simd>(
+        &mut self,
+        simd: S,
+        down: f64,
+        number: u32,
+        origin: i64,
+    ) -> WovenLine {
+        let knot = down.floor() as i64;
+        self.weave_to(simd, knot - 4, knot + 5);
+        if self.cell != Some(knot) {
+            self.find_coarse(simd, knot, self.cell == Some(knot - 1));
+            self.cell = Some(knot);
+        }
+        WovenLine {
+            knot,
+            weights: cubic::weights(down - knot as f64),
+            number,
+            origin,
+        }
+    }
+
     /// Computes the lattice's rows from `first` to `last`.
     #[inline(always)]
-    pub(super) fn weave_to<S: Simd>(&mut self, simd: S, first: i64, last: i64) {
+    fn weave_to<S: Simd>(&mut self, simd: S, first: i64, last: i64) {
         // Rows that no pixel needs are passed over.
         self.next = self.next.max(first);
         while self.next <= last {
@@ -94,7 +119,7 @@ impl Weaver<'_> {
     /// Finds the columns of the pixels below a row of the lattice for which its rows are too far apart. `went_on`: the last
     /// time it was the row above.
     #[inline(always)]
-    pub(super) fn find_coarse<S: Simd>(&mut self, simd: S, row: i64, went_on: bool) {
+    fn find_coarse<S: Simd>(&mut self, simd: S, row: i64, went_on: bool) {
         let new = if went_on { row + 2 } else { row - 1 };
         for row in new..=row + 2 {
             self.surprise(simd, row);
@@ -162,9 +187,30 @@ impl Weaver<'_> {
         ring[row.rem_euclid(RING) as usize].surprises = surprises;
     }
 
-    /// Gives `sink` the pixels of a line below a row of the lattice, interpolated.
+    /// Gives `sink` those pixels of a line below a row of the lattice that are not coarse.
     #[inline(always)]
-    pub(super) fn give<S: Simd>(
+    pub(super) fn give_between<S: Simd>(
+        &mut self,
+        simd: S,
+        line: &WovenLine,
+        columns: &Range<i64>,
+        sink: &mut dyn Sink,
+    ) {
+        let mut at = columns.start;
+        for coarse in 0..self.kept.coarse.len() {
+            let coarse = &self.kept.coarse[coarse];
+            let coarse = coarse.start.max(at)..coarse.end.min(columns.end);
+            if !coarse.is_empty() {
+                self.give(simd, line, at..coarse.start, sink);
+                at = coarse.end;
+            }
+        }
+        self.give(simd, line, at..columns.end, sink);
+    }
+
+    /// Gives `sink` pixels of a line, interpolated.
+    #[inline(always)]
+    fn give<S: Simd>(
         &mut self,
         simd: S,
         line: &WovenLine,
