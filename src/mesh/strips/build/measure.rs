@@ -71,21 +71,7 @@ impl Measure {
             Look::Few | Look::Many => f64::INFINITY,
             Look::Tops { limit } => limit,
         };
-        let mut known = 0;
-        let half = smallest(corners);
-        let whole = |stretch: DVec2| Corner {
-            tip: half + stretch,
-            far: -half - stretch,
-            radii: corners.map(|corner| corner.radii[0]),
-        };
-        let longer = |axis: usize| {
-            if corners[0].far[axis].is_infinite() {
-                STRETCH
-            } else {
-                0.0
-            }
-        };
-        let longest = DVec2::new(longer(0), longer(1));
+        let rectangles = Rectangles::of(corners);
         // A few large triangles take more samples each.
         let more = sqrt(FEW / triangles.len() as f64) as u32;
         let parts = parts * more.clamp(1, MOST);
@@ -97,6 +83,7 @@ impl Measure {
             }
         }
         self.measured.clear();
+        let mut known = 0;
         let mut most: f64 = 0.0;
         for triangle in triangles {
             let places = triangle.map(|i| all[i as usize]);
@@ -104,19 +91,11 @@ impl Measure {
             let densities = places.map(|place| f64::from(place.density));
             let quarters = places.map(|place| place.quarter);
             let spans = quarters != [quarters[0]; 3];
-            let spoken_for =
-                key(&places, fan_of, spans).is_some_and(|key| !self.measured.insert(key));
-            let umbra = densities == [1.0; 3] && places.iter().all(|place| place.fixed);
-            if spoken_for || umbra {
+            if self.is_known(&places, fan_of, spans) {
                 continue;
             }
-            let lengths = if spans && longest != DVec2::ZERO {
-                2
-            } else {
-                1
-            };
-            for stretch in [DVec2::ZERO, longest].into_iter().take(lengths) {
-                let whole = whole(stretch);
+            for stretch in rectangles.stretches(spans) {
+                let whole = rectangles.whole(stretch);
                 let at = [0, 1, 2].map(|i: usize| at[i] + SIGNS[quarters[i]] * stretch);
                 let first = known;
                 let errors = |samples: &[Weights], errors: &mut [f64]| {
@@ -126,11 +105,7 @@ impl Measure {
                         let exact = if on_the_way_up {
                             density(weights)
                         } else {
-                            if !exact.complete {
-                                exact.densities.push(density(weights));
-                            }
-                            known += 1;
-                            exact.densities[known - 1]
+                            exact.next(&mut known, || density(weights))
                         };
                         *error = mix_densities(densities, weights) - exact;
                     }
@@ -152,6 +127,58 @@ impl Measure {
         }
         exact.complete = true;
         most
+    }
+
+    /// Whether a triangle tells nothing: another one speaks for it, or it is all umbra.
+    fn is_known(&mut self, places: &[Place; 3], fan_of: &[usize; 4], spans: bool) -> bool {
+        let spoken_for = key(places, fan_of, spans).is_some_and(|key| !self.measured.insert(key));
+        spoken_for
+            || places
+                .iter()
+                .all(|place| place.fixed && place.density == 1.0)
+    }
+}
+
+/// The rectangles with the same corners that errors are measured on, each by how much it is longer than the smallest one.
+struct Rectangles {
+    /// Half of the smallest one's sides.
+    half: DVec2,
+    radii: [f64; 4],
+    longest: DVec2,
+}
+
+impl Rectangles {
+    fn of(corners: &[Corner; 4]) -> Self {
+        let longer = |axis: usize| {
+            if corners[0].far[axis].is_infinite() {
+                STRETCH
+            } else {
+                0.0
+            }
+        };
+        Self {
+            half: smallest(corners),
+            radii: corners.map(|corner| corner.radii[0]),
+            longest: DVec2::new(longer(0), longer(1)),
+        }
+    }
+
+    /// Those on which triangles differ that span two corners, or lie at one.
+    fn stretches(&self, spans: bool) -> impl Iterator<Item = DVec2> {
+        let lengths = if spans && self.longest != DVec2::ZERO {
+            2
+        } else {
+            1
+        };
+        [DVec2::ZERO, self.longest].into_iter().take(lengths)
+    }
+
+    fn whole(&self, stretch: DVec2) -> Corner {
+        Corner {
+            tip: self.half + stretch,
+            far: -self.half - stretch,
+            radii: self.radii,
+        }
     }
 }
 

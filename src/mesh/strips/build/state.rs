@@ -45,9 +45,20 @@ pub(super) struct State {
 /// Exact densities at the samples of triangles that stay where they are while their own densities are balanced.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Exact {
-    pub(super) densities: Vec<f64>,
+    densities: Vec<f64>,
     /// Whether there are all of them.
     pub(super) complete: bool,
+}
+
+impl Exact {
+    /// The density at the sample after so many that are known, computed unless there are all of them.
+    pub(super) fn next(&mut self, known: &mut usize, density: impl FnOnce() -> f64) -> f64 {
+        if !self.complete {
+            self.densities.push(density());
+        }
+        *known += 1;
+        self.densities[*known - 1]
+    }
 }
 
 impl State {
