@@ -8,7 +8,7 @@
 use core::f64::consts::{FRAC_PI_4, PI, TAU};
 
 use glam::DVec2;
-use libm::{asin, atan2, sin, sqrt};
+use libm::{asin, atan2, sin};
 
 use crate::outline::{Arc, Edge};
 
@@ -52,7 +52,7 @@ pub(super) fn settled(density: f64) -> f64 {
 /// The area of the unit disc between y = 0 and `t`, right of its centre: from -π/4 to π/4.
 pub(crate) fn half_area(t: f64) -> f64 {
     let t = t.clamp(-1.0, 1.0);
-    f64::midpoint(t * sqrt((1.0 - t) * (1.0 + t)), asin(t))
+    f64::midpoint(t * ((1.0 - t) * (1.0 + t)).sqrt(), asin(t))
 }
 
 /// The angle from `a` to `b` seen from the origin, within a half turn.
@@ -78,7 +78,7 @@ pub(super) fn of_line(from: DVec2, to: DVec2) -> f64 {
     if distance.abs() >= 1.0 {
         return angle(from, to);
     }
-    let half_chord = sqrt((1.0 - distance) * (1.0 + distance));
+    let half_chord = ((1.0 - distance) * (1.0 + distance)).sqrt();
     let start = from.dot(along);
     let first = start.max(-half_chord);
     let last = (start + length).min(half_chord);
@@ -107,7 +107,11 @@ fn of_arc(arc: &Arc, disc: f64) -> f64 {
         0.0
     } else {
         let past = arc.radius - distance;
-        2.0 * asin(sqrt((disc - past) * (disc + past) / (4.0 * arc.radius * distance)).min(1.0))
+        2.0 * asin(
+            ((disc - past) * (disc + past) / (4.0 * arc.radius * distance))
+                .sqrt()
+                .min(1.0),
+        )
     };
     let nearest = atan2(-arc.center.y, -arc.center.x);
     let mut area = 0.0;

@@ -3,7 +3,7 @@
 use core::f64::consts::{FRAC_1_PI, FRAC_PI_2, TAU};
 
 use glam::DVec2;
-use libm::{cos, sin, sqrt};
+use libm::{cos, sin};
 
 /// Below this penumbra radius in pixels the coverage of pixels is averaged over the disc, from there on the density over
 /// the pixel: each the smoother function of the two, as the disc or the pixel is the larger.
@@ -159,7 +159,7 @@ fn on_disc(
     turn: u32,
 ) -> impl Iterator<Item = (DVec2, f64)> {
     rings.flat_map(move |(node, weight)| {
-        let distance = sqrt(node + 0.5);
+        let distance = (node + 0.5).sqrt();
         (0..turn).map(move |step| {
             let angle = TAU * (f64::from(step) + 0.5) / f64::from(turn);
             (

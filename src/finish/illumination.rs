@@ -3,7 +3,7 @@
 use core::f64::consts::{LN_2, PI};
 
 use glam::{DVec2, DVec3};
-use libm::{cos, sin, sqrt};
+use libm::{cos, sin};
 
 use super::number::Number;
 use crate::error::{self, Result};
@@ -292,17 +292,17 @@ impl Lamp {
         let [center, edge] = [DVec2::ZERO, DVec2::X].map(|at| light.point(at, elevation));
         // The tangents of the disc's half angle as seen from below its centre, and of the highlight's at half its strength.
         let disc = (edge - center).length() / center.z;
-        let highlight = sqrt(2.0 * LN_2 / material.shininess);
+        let highlight = (2.0 * LN_2 / material.shininess).sqrt();
         let count = if material.specular > 0.0 && disc > highlight {
             (SAMPLES * (disc / highlight) * (disc / highlight)).min(MOST_SAMPLES) as u32
         } else {
             0
         };
         // Along a spiral by the golden angle (Vogel 1979) each point has the same area.
-        let golden = PI * (3.0 - sqrt(5.0));
+        let golden = PI * (3.0 - 5.0_f64.sqrt());
         let samples = (0..count).map(|index| {
             let index = f64::from(index);
-            let radius = sqrt((index + 0.5) / f64::from(count));
+            let radius = ((index + 0.5) / f64::from(count)).sqrt();
             place(DVec2::new(cos(golden * index), sin(golden * index)) * radius)
         });
         Self {

@@ -2,7 +2,7 @@
 
 use core::ops::{Add, Mul, Sub};
 
-use libm::{pow, sqrt};
+use libm::pow;
 
 /// A number, or something that stands for one at every point.
 pub(super) trait Number:
@@ -43,7 +43,7 @@ impl Number for f64 {
     }
 
     fn inverse_root(self) -> Self {
-        1.0 / sqrt(self)
+        1.0 / self.sqrt()
     }
 
     fn inverse(self) -> Self {
@@ -136,7 +136,7 @@ impl Number for Taylor {
     }
 
     fn inverse_root(self) -> Self {
-        let root = 1.0 / sqrt(self.value());
+        let root = 1.0 / self.value().sqrt();
         let first = -0.5 * root / self.value();
         self.of(root, first, -1.5 * first / self.value())
     }
@@ -171,7 +171,7 @@ mod tests {
             Taylor::linear(0.7, 1.0, 0.3),
             Taylor::linear(0.4, -0.2, 1.0),
         ];
-        let of = |x: f64, y: f64| pow((x * x + y) / sqrt(x + y * y), 5.0) + 1.0 / (x + y);
+        let of = |x: f64, y: f64| pow((x * x + y) / (x + y * y).sqrt(), 5.0) + 1.0 / (x + y);
         let expanded = {
             let inner = (x * x + y) * (x + y * y).inverse_root();
             inner.power(5.0) + (x + y).inverse()

@@ -1,7 +1,7 @@
 //! The rim: how a surface falls from its flat part to its outline.
 
 use glam::{DVec2, DVec3};
-use libm::{atan2, cos, sin, sqrt};
+use libm::{atan2, cos, sin};
 
 use core::f64::consts::{FRAC_PI_2, PI};
 
@@ -81,7 +81,7 @@ impl Rim {
         let depth = depth.clamp(0.0, 1.0);
         let share = match self.profile {
             RimProfile::Bevel => depth,
-            RimProfile::QuarterRound => sqrt(depth * (2.0 - depth)),
+            RimProfile::QuarterRound => (depth * (2.0 - depth)).sqrt(),
             RimProfile::Cosine => (1.0 - cos(PI * depth)) / 2.0,
         };
         self.height * (share - 1.0)
@@ -98,11 +98,11 @@ impl Rim {
             // The ellipse's gradient.
             RimProfile::QuarterRound => (
                 self.height * (1.0 - depth),
-                self.width * sqrt(depth * (2.0 - depth)),
+                self.width * (depth * (2.0 - depth)).sqrt(),
             ),
             RimProfile::Cosine => (FRAC_PI_2 * self.height * sin(PI * depth), self.width),
         };
-        let length = sqrt(across * across + up * up);
+        let length = (across * across + up * up).sqrt();
         (outwards * (across / length)).extend(up / length)
     }
 

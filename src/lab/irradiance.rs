@@ -14,7 +14,7 @@
 use core::f64::consts::PI;
 
 use glam::DVec2;
-use libm::{atan, atan2, sqrt};
+use libm::{atan, atan2};
 
 use super::view::View;
 use super::{Claim, Family, Parameter, Technique};
@@ -118,7 +118,7 @@ impl Disc {
             center,
             a,
             b,
-            root: sqrt((a - b) * (a + b)),
+            root: ((a - b) * (a + b)).sqrt(),
             k,
         }
     }
@@ -140,7 +140,7 @@ impl Disc {
         if distance.abs() >= 1.0 {
             return self.circle(from, to);
         }
-        let half = sqrt((1.0 - distance) * (1.0 + distance));
+        let half = ((1.0 - distance) * (1.0 + distance)).sqrt();
         let start = from.dot(direction);
         let (first, last) = (start.max(-half), (start + length).min(half));
         if first >= last {
@@ -162,7 +162,7 @@ impl Disc {
     fn line(&self, from: DVec2, to: DVec2, direction: DVec2) -> f64 {
         let (from, to) = (from + self.center, to + self.center);
         let distance = from.perp_dot(direction);
-        let depth = sqrt(distance * distance + self.k * self.k);
+        let depth = (distance * distance + self.k * self.k).sqrt();
         let angle = |p: DVec2| atan(p.dot(direction) / depth);
         distance / depth * (angle(to) - angle(from))
     }
@@ -185,7 +185,7 @@ impl Disc {
     fn antiderivative(&self, angle: f64) -> f64 {
         let turns = (angle / (2.0 * PI)).round();
         let half = (angle - turns * 2.0 * PI) / 2.0;
-        let slope = sqrt((self.a - self.b) / (self.a + self.b));
+        let slope = ((self.a - self.b) / (self.a + self.b)).sqrt();
         let within = atan2(slope * libm::sin(half), libm::cos(half));
         2.0 / self.root * (within + turns * PI)
     }

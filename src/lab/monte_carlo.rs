@@ -5,7 +5,6 @@
 //! variance, and so the estimate comes with a deviation of its own that no closed form had a part in.
 
 use glam::DVec2;
-use libm::sqrt;
 
 use super::rays::{number, on_disc};
 use super::view::{View, holds};
@@ -56,7 +55,7 @@ impl MonteCarlo {
     pub fn new(rays: u32) -> Result<Self> {
         let rays = error::within("rays", f64::from(rays), 2.0, 16_777_216.0)?;
         Ok(Self {
-            side: sqrt(rays / 2.0).round() as u32,
+            side: (rays / 2.0).sqrt().round() as u32,
         })
     }
 
@@ -129,7 +128,7 @@ impl MonteCarlo {
         Estimate {
             density: hidden / all,
             // The variance of the mean of two rays is half of theirs, which a pair that differs estimates as 1/2.
-            deviation: sqrt(differing as f64 / 4.0) / cells as f64 * (most * rays as f64 / all),
+            deviation: (differing as f64 / 4.0).sqrt() / cells as f64 * (most * rays as f64 / all),
             rays: rays as u32,
         }
     }

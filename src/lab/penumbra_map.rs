@@ -10,7 +10,7 @@
 //! its own; a light that is no disc is several discs.
 
 use glam::{DVec2, DVec3};
-use libm::{exp, sqrt};
+use libm::exp;
 
 use super::card::Card;
 use super::plane::Plane;
@@ -76,7 +76,7 @@ impl DiscLight {
                 center[1] + at(i / count),
                 center[2],
             ],
-            radius: cell / sqrt(core::f64::consts::PI),
+            radius: cell / core::f64::consts::PI.sqrt(),
             power: 1.0,
         };
         (0..count * count).map(disc).collect()
@@ -265,7 +265,7 @@ impl<'a> Averages<'a> {
             if dy > radius {
                 break;
             }
-            let half = sqrt(radius * radius - dy * dy);
+            let half = (radius * radius - dy * dy).sqrt();
             let row = self.sums.row(row);
             sum += row.up_to(center.x + half) - row.up_to(center.x - half);
             area += 2.0 * half;

@@ -8,7 +8,7 @@
 use core::f64::consts::{PI, TAU};
 
 use glam::DVec2;
-use libm::{cos, sin, sqrt};
+use libm::{cos, sin};
 
 use super::view::{View, holds};
 use super::{Claim, Family, Parameter, Technique};
@@ -41,7 +41,7 @@ impl ShadowVolume {
             return vec![DVec2::ZERO];
         }
         let count = f64::from(self.corners);
-        let radius = sqrt(TAU / (count * sin(TAU / count)));
+        let radius = (TAU / (count * sin(TAU / count))).sqrt();
         let corner = |i: u32| {
             let angle = TAU * (f64::from(i) + 0.5) / count;
             DVec2::new(cos(angle), sin(angle)) * radius

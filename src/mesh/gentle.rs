@@ -13,7 +13,7 @@ use core::f64::consts::FRAC_2_PI;
 use std::borrow::Cow;
 
 use glam::DVec2;
-use libm::{ceil, sqrt};
+use libm::ceil;
 
 use self::curve::Curve;
 use self::strips::Strips;
@@ -212,8 +212,8 @@ impl Gentle {
         let count = |[t, _]: &[f64; 2]| {
             let bend: f64 = self.curve.bends(t * self.radius).sum();
             // What a straight edge's density grows by.
-            let slope = FRAC_2_PI / self.radius * sqrt(1.0 - t * t);
-            bend * sqrt(slope / (16.0 * along))
+            let slope = FRAC_2_PI / self.radius * (1.0 - t * t).sqrt();
+            bend * (slope / (16.0 * along)).sqrt()
         };
         ceil(inner.iter().map(count).fold(3.0, f64::max)) as usize
     }
@@ -223,7 +223,7 @@ impl Gentle {
         let steepest = inner.iter().map(|[t, _]| t.abs()).fold(0.0, f64::max);
         let width = (1.0 - steepest) * self.radius;
         let bend: f64 = self.curve.bends(self.radius).sum();
-        let least = ceil(bend / sqrt(8.0 * BEYOND * width)) as usize;
+        let least = ceil(bend / (8.0 * BEYOND * width).sqrt()) as usize;
         count.div_ceil(2).max(least)
     }
 

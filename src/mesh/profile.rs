@@ -3,7 +3,7 @@
 use core::f64::consts::{FRAC_PI_2, PI};
 use std::sync::OnceLock;
 
-use libm::{asin, cbrt, cos, exp, sqrt};
+use libm::{asin, cbrt, cos, exp};
 
 /// How density grows across a straight edge, from the outer edge of the penumbra to the umbra.
 ///
@@ -34,7 +34,7 @@ impl Profile {
         match self {
             Self::Linear => along,
             Self::Cosine => (1.0 - cos(PI * along)) / 2.0,
-            Self::Disc => 0.5 + (t * sqrt(1.0 - t * t) + asin(t)) / PI,
+            Self::Disc => 0.5 + (t * (1.0 - t * t).sqrt() + asin(t)) / PI,
             Self::Skia => (exp(-4.0 * (1.0 - along) * (1.0 - along)) - 0.018).max(0.0),
         }
     }
@@ -58,7 +58,7 @@ fn disc_distance(density: f64) -> f64 {
     let mut past = root * root / 2.0;
     for _ in 0..6 {
         let t = past.min(1.0) - 1.0;
-        let slope = sqrt((1.0 - t) * (1.0 + t)) / FRAC_PI_2;
+        let slope = ((1.0 - t) * (1.0 + t)).sqrt() / FRAC_PI_2;
         if slope == 0.0 {
             break;
         }
@@ -160,7 +160,7 @@ fn overshoot(from: Knot, to: Knot) -> f64 {
     }
     let slope = (to.value - from.value) / (to.t - from.t);
     let scaled = (slope * FRAC_PI_2).clamp(0.0, 1.0);
-    let t = (-sqrt(1.0 - scaled * scaled)).clamp(from.t, to.t);
+    let t = (-(1.0 - scaled * scaled).sqrt()).clamp(from.t, to.t);
     from.value + slope * (t - from.t) - Profile::Disc.at(t)
 }
 

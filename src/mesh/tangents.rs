@@ -8,7 +8,7 @@
 //! tangents inside: concave corners, holes that close and umbrae that split or vanish need no case of their own.
 
 use glam::DVec2;
-use libm::{atan2, cos, sin, sqrt};
+use libm::{atan2, cos, sin};
 
 use crate::outline::{Outline, Winding, resolve_loops};
 use crate::path::arc_steps;
@@ -142,7 +142,7 @@ fn tangent_loop(circles: &[ProjectionCircle], t: f64, flatness: f64) -> Vec<DVec
 /// edge beyond the corner, which turns by `turn` towards the tangent (away from it if negative).
 fn reach_past_corner(turn: f64, share: f64) -> f64 {
     let (sin_turn, cos_turn) = (sin(turn), cos(turn));
-    let to_corner = sqrt((1.0 - share) * (1.0 + share));
+    let to_corner = ((1.0 - share) * (1.0 + share)).sqrt();
     if turn <= 0.0 {
         return to_corner;
     }
@@ -170,7 +170,7 @@ pub(super) fn tangent_normal(
         return DVec2::X;
     }
     let along = (share * (from.radius - to.radius) / distance).clamp(-1.0, 1.0);
-    let across = sqrt((1.0 - along) * (1.0 + along));
+    let across = ((1.0 - along) * (1.0 + along)).sqrt();
     let direction = way / distance;
     direction * along + direction.perp() * (side * across)
 }
@@ -303,7 +303,7 @@ pub(super) mod tests {
         // Every tangent keeps its distance from both circles: the lowest point lies on the circle at (20, 0).
         let lowest = outer[0].iter().map(|p| p.y).fold(f64::MAX, f64::min);
         assert!((lowest + 4.0).abs() < 1e-3);
-        let touch = DVec2::new(20.0 - 4.0 * 0.2, -4.0 * sqrt(1.0 - 0.04));
+        let touch = DVec2::new(20.0 - 4.0 * 0.2, -4.0 * (1.0_f64 - 0.04).sqrt());
         assert!(
             outer[0].iter().any(|p| (*p - touch).length() < 1e-9),
             "{:?}",

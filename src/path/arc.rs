@@ -3,7 +3,7 @@
 use core::f64::consts::{PI, TAU};
 
 use glam::DVec2;
-use libm::{acos, atan2, cos, sin, sqrt};
+use libm::{acos, atan2, cos, sin};
 
 /// The points `center + u cos θ + v sin θ`, θ from `start` to `start + sweep` (radians): an arc of the ellipse with the
 /// conjugate half diameters `u` and `v`. An affine map maps the three vectors and keeps the angles.
@@ -59,7 +59,7 @@ impl EllipseArc {
         let h = DVec2::new(half.dot(axis), axis.perp_dot(half)) / radii;
         let grow = h.length().max(1.0);
         let (radii, h) = (radii * grow, h / grow);
-        let away = sqrt((1.0 / h.length_squared() - 1.0).max(0.0));
+        let away = (1.0 / h.length_squared() - 1.0).max(0.0).sqrt();
         let side = if large { -1.0 } else { 1.0 };
         let c = side * away * DVec2::new(h.y, -h.x);
         let (u, v) = (axis * radii.x, axis.perp() * radii.y);
@@ -92,7 +92,7 @@ impl EllipseArc {
 
     /// Into how many lines it is cut.
     pub(super) fn steps(&self, flatness: f64) -> u32 {
-        let longest = sqrt(self.u.length_squared() + self.v.length_squared());
+        let longest = (self.u.length_squared() + self.v.length_squared()).sqrt();
         arc_steps(longest, self.sweep, flatness)
     }
 

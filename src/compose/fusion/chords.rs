@@ -9,7 +9,7 @@ use core::ops::Range;
 
 use fearless_simd::{Level, Simd, SimdBase, dispatch, f32x16};
 use glam::DVec2;
-use libm::{asin, sqrt};
+use libm::asin;
 
 use super::occluder::Loop;
 use crate::density::lanes::LANES;
@@ -383,7 +383,7 @@ impl Part<'_> {
             let low = height(from.y.max(ends[0].min(ends[1]))).max(-1.0);
             let high = height(to.y.min(ends[0].max(ends[1]))).min(1.0);
             if low < high {
-                let steps = ((high - low) * sqrt(slope.abs()) / SLANTED_STEP).ceil();
+                let steps = ((high - low) * slope.abs().sqrt() / SLANTED_STEP).ceil();
                 let cut = |step: u32| asin(low + (high - low) * (f64::from(step) / steps));
                 out.extend((0..=steps as u32).map(cut));
             }

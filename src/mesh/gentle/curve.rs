@@ -3,7 +3,7 @@
 use core::f64::consts::TAU;
 
 use glam::DVec2;
-use libm::{atan2, sqrt, tan};
+use libm::{atan2, tan};
 
 /// How far a vertex turns at most, in radians: beyond, it is a corner.
 const CORNER: f64 = 0.3;
@@ -42,7 +42,7 @@ impl Station {
     /// circle of the curve's curvature share is as long. It is t + √(R² - 1 + t²) - R, if the circle's radius is R.
     pub(super) fn distance_at(&self, t: f64) -> f64 {
         let rest = self.curvature * (1.0 - t * t);
-        t - rest / (1.0 + sqrt(1.0 - self.curvature * rest))
+        t - rest / (1.0 + (1.0 - self.curvature * rest).sqrt())
     }
 }
 
@@ -87,7 +87,7 @@ impl Curve {
     /// How much each line bends at a distance outwards: a chord of so much is off by an eighth of its square.
     pub(super) fn bends(&self, distance: f64) -> impl Iterator<Item = f64> {
         let lines = self.lengths.iter().zip(&self.turns);
-        lines.map(move |(length, turn)| sqrt((length + distance * turn) * turn))
+        lines.map(move |(length, turn)| ((length + distance * turn) * turn).sqrt())
     }
 
     /// How many times as long lines are at a distance outwards, at most.

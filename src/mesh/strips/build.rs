@@ -8,7 +8,7 @@ mod measure;
 mod state;
 
 use glam::DVec2;
-use libm::{ceil, sqrt};
+use libm::ceil;
 
 use self::measure::{Look, Measure};
 use self::state::State;
@@ -243,12 +243,12 @@ fn rings(bends: &Bends, error: f64) -> Rings {
     // What pieces across take of the error is left to pieces along rings: more rings, fewer columns.
     for share in 1..SHARES {
         let across = error * f64::from(share) / f64::from(SHARES);
-        let count = |bend: f64| ceil(bend / (4.0 * sqrt(across)) - MIDDLE).max(0.0);
+        let count = |bend: f64| ceil(bend / (4.0 * across.sqrt()) - MIDDLE).max(0.0);
         let (outside, inside) = (count(bends.outside), count(bends.inside));
         let piece = (bends.outside / (outside + MIDDLE)).max(bends.inside / (inside + MIDDLE));
         let across = piece * piece / 16.0;
         let along = error - across;
-        let columns = bends.along / sqrt(along) + SIDE_COLUMNS;
+        let columns = bends.along / along.sqrt() + SIDE_COLUMNS;
         let cost = (outside + inside + 1.0) * columns;
         if cost < best.0 {
             let rings = Rings {

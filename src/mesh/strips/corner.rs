@@ -8,7 +8,6 @@
 use core::f64::consts::{FRAC_1_PI, FRAC_PI_4};
 
 use glam::DVec2;
-use libm::sqrt;
 
 use crate::density::half_area;
 
@@ -57,7 +56,7 @@ impl Corner {
         // Sides from less to more along each axis: `x` and `y` are the same side of a square to either.
         let mut side = |distance: f64, [from, to]: [f64; 2], turn: fn(f64, f64) -> DVec2| {
             if distance.abs() < 1.0 {
-                let half = sqrt((1.0 - distance) * (1.0 + distance));
+                let half = ((1.0 - distance) * (1.0 + distance)).sqrt();
                 if from <= half && half < to {
                     ways += turn(distance, half);
                 }
@@ -94,12 +93,12 @@ impl Corner {
 /// Where a quarter circle leaves the unit disc, less where it enters it.
 fn ways_of_arc(center: DVec2, radius: f64, outwards: DVec2) -> DVec2 {
     let squared = center.length_squared();
-    let distance = sqrt(squared);
+    let distance = squared.sqrt();
     if !(distance < 1.0 + radius && distance > (1.0 - radius).abs()) {
         return DVec2::ZERO;
     }
     let along = (1.0 - radius * radius + squared) / (2.0 * distance);
-    let across = sqrt(((1.0 - along) * (1.0 + along)).max(0.0));
+    let across = ((1.0 - along) * (1.0 + along)).max(0.0).sqrt();
     let (to, side) = (center / distance, (center / distance).perp());
     let mut ways = DVec2::ZERO;
     // Anticlockwise a circle passes the disc's centre from the left of the way between their centres to the right.
@@ -150,7 +149,7 @@ fn straight(x: f64, from: f64, to: f64) -> f64 {
     if x.abs() >= 1.0 {
         return whole.copysign(x);
     }
-    let half = sqrt((1.0 - x) * (1.0 + x));
+    let half = ((1.0 - x) * (1.0 + x)).sqrt();
     let (start, end) = (from.clamp(-half, half), to.clamp(-half, half));
     let within = quick_half_area(end) - quick_half_area(start);
     x * (end - start) + (whole - within).copysign(x)
@@ -159,12 +158,12 @@ fn straight(x: f64, from: f64, to: f64) -> f64 {
 fn rounded(center: DVec2, radius: f64, from: f64, to: f64) -> f64 {
     // In between the two circles' crossings the same one of them is nearer all the way.
     let squared = center.length_squared();
-    let distance = sqrt(squared);
+    let distance = squared.sqrt();
     let mut cuts = [to; 3];
     if distance > 0.0 {
         let along = (1.0 - radius * radius + squared) / (2.0 * distance);
         if along.abs() < 1.0 {
-            let across = sqrt((1.0 - along) * (1.0 + along));
+            let across = ((1.0 - along) * (1.0 + along)).sqrt();
             let (to_center, side) = (center / distance, center.perp() / distance);
             let mut count = 0;
             for point in [
@@ -188,9 +187,9 @@ fn rounded(center: DVec2, radius: f64, from: f64, to: f64) -> f64 {
             continue;
         }
         let middle = f64::midpoint(start, end);
-        let disc = sqrt((1.0 - middle * middle).max(0.0));
+        let disc = (1.0 - middle * middle).max(0.0).sqrt();
         let up = middle - center.y;
-        let side = center.x + sqrt((radius * radius - up * up).max(0.0));
+        let side = center.x + (radius * radius - up * up).max(0.0).sqrt();
         sum += if side.abs() >= disc {
             (quick_half_area(end) - quick_half_area(start)).copysign(side)
         } else {
@@ -223,7 +222,7 @@ fn quick_half_area(t: f64) -> f64 {
     let low = pair(a, b) + pair(c, d) * squared;
     let high = pair(e, f) + pair(g, h) * squared;
     let smooth = low + high * (squared * squared);
-    (FRAC_PI_4 - v * sqrt(v) * smooth).copysign(t)
+    (FRAC_PI_4 - v * v.sqrt() * smooth).copysign(t)
 }
 
 const TAIL: [f64; 8] = [

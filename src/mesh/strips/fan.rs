@@ -4,7 +4,7 @@ use core::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_4};
 use core::ops::Range;
 
 use glam::DVec2;
-use libm::{ceil, cos, sin, sqrt};
+use libm::{ceil, cos, sin};
 
 use super::corner::Corner;
 use super::ray::{Knot, Ray, STEPS, span};
@@ -59,7 +59,7 @@ struct RingBends {
 impl RingBends {
     /// How many vertices the ring takes before the umbra's corner, if that has one, and how many after.
     fn counts(&self, rings: &Rings) -> [f64; 2] {
-        let most = 4.0 * sqrt(rings.along);
+        let most = 4.0 * rings.along.sqrt();
         match self.tip {
             // Without a vertex there the last ring could cut the corner of a sharp umbra.
             Some(tip) if !rings.anchored => {
@@ -270,7 +270,7 @@ impl Fan {
                 .perp_dot(after.normalize_or_zero());
             let slope = f64::midpoint(a.gradient.length(), b.gradient.length());
             let around = slope * way(piece).length() * turn.abs() / 2.0;
-            self.knots[piece].bend = sqrt(along.max(geometry * around));
+            self.knots[piece].bend = along.max(geometry * around).sqrt();
         }
         let last = ring + 1 == rings.count();
         RingBends {
@@ -381,12 +381,12 @@ fn tangents(radius: f64, beyond: f64) -> f64 {
         return 0.0;
     }
     // 1 / cos - 1 is about half of the square.
-    ceil(FRAC_PI_4 / sqrt(2.0 * beyond / radius)).max(1.0)
+    ceil(FRAC_PI_4 / (2.0 * beyond / radius).sqrt()).max(1.0)
 }
 
 /// How much density bends from one place with its gradient to another: the root of length times change of slope.
 fn bend(from: (DVec2, DVec2), to: (DVec2, DVec2)) -> f64 {
     let way = to.0 - from.0;
     // Length times change of slope along the way: its length is in there twice.
-    sqrt((to.1 - from.1).dot(way).abs())
+    (to.1 - from.1).dot(way).abs().sqrt()
 }

@@ -5,7 +5,6 @@
 //! samples adds up to, divided by that, is the number of pieces that it takes. Only slopes are needed for it.
 
 use glam::DVec2;
-use libm::sqrt;
 
 use super::corner::Corner;
 use super::fan::Rings;
@@ -82,7 +81,7 @@ impl Ray {
     fn measure(&mut self) {
         let slopes = self.gradients.map(|gradient| -gradient.dot(self.direction));
         let at = &self.distances;
-        let part = |rise: f64, length: f64| sqrt((rise * length).abs());
+        let part = |rise: f64, length: f64| (rise * length).abs().sqrt();
         for step in 1..=STEPS {
             let rise = slopes[step] - slopes[step - 1];
             self.bends[step] = self.bends[step - 1] + part(rise, at[step] - at[step - 1]);
@@ -150,7 +149,7 @@ impl Ray {
             direction: self.direction,
             distance,
             place: (distance - from) / (to - from),
-            gradient: gradient / sqrt(gradient.length()).max(f64::MIN_POSITIVE),
+            gradient: gradient / gradient.length().sqrt().max(f64::MIN_POSITIVE),
             offset,
             bend: 0.0,
         }
@@ -184,5 +183,5 @@ fn reach(tip: DVec2, radius: f64, direction: DVec2) -> f64 {
         return nearest;
     }
     let across = center.perp_dot(direction);
-    center.dot(direction) + sqrt((radius * radius - across * across).max(0.0))
+    center.dot(direction) + (radius * radius - across * across).max(0.0).sqrt()
 }

@@ -3,7 +3,6 @@
 use std::collections::HashSet;
 
 use glam::DVec2;
-use libm::sqrt;
 
 use super::state::{Place, State, smallest};
 use crate::mesh::samples::{Samples, Weights, mix, mix_densities};
@@ -73,7 +72,7 @@ impl Measure {
         };
         let rectangles = Rectangles::of(corners);
         // A few large triangles take more samples each.
-        let more = sqrt(FEW / triangles.len() as f64) as u32;
+        let more = (FEW / triangles.len() as f64).sqrt() as u32;
         let parts = parts * more.clamp(1, MOST);
         // Tops come after all samples, whose extremes stay.
         let extremes = limit.is_infinite();
