@@ -7,6 +7,7 @@ use fearless_simd::Level;
 use glam::DVec2;
 
 use crate::compose::Fusion;
+use crate::density::crowd::Crowd;
 use crate::density::grid::GridScratch;
 use crate::density::nine_patch::NinePatchScratch;
 use crate::density::rows::{BAND, Bands, Rows};
@@ -29,6 +30,7 @@ pub struct Scratch {
     edges: Vec<Vec<Edge>>,
     /// Vertices of one curve.
     pub(crate) vertices: Vec<DVec2>,
+    pub(crate) crowd: Crowd,
     pub(crate) rows: Rows,
     pub(crate) bands: Bands,
     pub(crate) nine_patch: NinePatchScratch,
@@ -64,6 +66,7 @@ impl Scratch {
             level,
             edges: Vec::new(),
             vertices: Vec::new(),
+            crowd: Crowd::default(),
             rows: Rows::default(),
             bands: Bands::default(),
             nine_patch: NinePatchScratch::default(),

@@ -13,7 +13,8 @@ use common::{
 };
 use penumbral::plan::{self, Method, Target};
 use penumbral::{
-    Color, Error, Grid, Hidden, Light, Paint, PixelOptions, Scratch, Shadow, Shape, Tolerance,
+    Color, Error, FillRule, Grid, Hidden, Light, Paint, PixelOptions, Scratch, Shadow, Shape,
+    Tolerance,
 };
 
 /// The least error below r = 3 px that is promised of averages.
@@ -1227,7 +1228,7 @@ fn corners_of_the_largest_outlines_keep_their_tolerance() {
         let [width, height] = size;
         let rect = Shape::rounded_rect(35.3, 18.7, width, height, 0.4).unwrap();
         let triangle = [[35.3, 18.7], [35.3 + width, 18.7], [35.3, 18.7 + height]];
-        let triangle = Shape::polygon(&[triangle.to_vec()], penumbral::FillRule::NonZero).unwrap();
+        let triangle = Shape::polygon(&[triangle.to_vec()], FillRule::NonZero).unwrap();
         for shape in [rect, triangle] {
             for radius in [0.0, 0.6, 3.0, 5.0, 20.0] {
                 let light = Light::directional([0.0, 0.0], radius).unwrap();
@@ -1304,6 +1305,59 @@ fn crowds_of_curves_keep_their_tolerance() {
             let drawn = (&united, exact.as_slice());
             add_within(&mut summary, [1.0, 4.0, 8.0], drawn, &label, &mut scratch);
         }
+    }
+    summary.finish();
+}
+
+/// Bars finer than pixels under a penumbra narrower than 3 px, along the axes and not: what each edge leaves adds up.
+#[test]
+fn gratings_keep_their_tolerance() {
+    let (mut scratch, mut summary, mut random) =
+        (Scratch::new(), Summary::default(), Random::new(41));
+    let grid = Grid::new([0.0; 2], [22, 17], 1.0).unwrap();
+    let bars = |count: u32, period: f64, share: f64, phase: f64, turn: f64| {
+        let (sin, cos) = turn.sin_cos();
+        let turned = |x: f64, y: f64| {
+            let (x, y) = (x - 11.0, y - 8.5);
+            [11.0 + cos * x - sin * y, 8.5 + sin * x + cos * y].map(|at| at as f32)
+        };
+        let bar = |index: u32| {
+            let left = 4.0 + phase + f64::from(index) * period;
+            let right = left + share * period;
+            vec![
+                turned(left, 4.3),
+                turned(right, 4.3),
+                turned(right, 12.6),
+                turned(left, 12.6),
+            ]
+        };
+        let bars: Vec<Vec<[f32; 2]>> = (0..count).map(bar).collect();
+        Shape::polygon(&bars, FillRule::NonZero).unwrap()
+    };
+    let mut cases = vec![
+        (bars(40, 0.3237, 0.4323, 0.2516, 0.0), 1.8775),
+        (bars(12, 0.9051, 0.7404, 0.0143, 0.0), 1.7596),
+        (bars(34, 0.3460, 0.7386, 0.1707, 0.0), 1.7918),
+        (bars(27, 0.18328, 0.55699, 0.8047, 0.0), 0.4325),
+        (bars(17, 0.22263, 0.61562, 0.77323, 0.0), 0.52485),
+        (bars(24, 0.27, 0.3791, 0.9735, 1.534_94), 0.78997),
+    ];
+    let mut unit = || f64::from(random.between(0.0, 1.0));
+    for case in 0..90 {
+        let period = 0.15 + 2.0 * unit() * unit();
+        let count = (1.0 + unit() * (13.0 / period)) as u32;
+        let share = 0.2 + 0.7 * unit();
+        let turn = if case % 2 == 0 { 3.0 * unit() } else { 0.0 };
+        let bars = bars(count, period, share, unit(), turn);
+        cases.push((bars, 3.0 * unit()));
+    }
+    for (index, (bars, radius)) in cases.iter().enumerate() {
+        let light = Light::directional([0.0; 2], *radius as f32).unwrap();
+        let shadow = light.cast(bars, 1.0, 0.0).unwrap();
+        let exact = densities(&shadow, &grid, &by(Some(Method::Exact)), &mut scratch);
+        let drawn = densities(&shadow, &grid, &by(None), &mut scratch);
+        let label = format!("case {index}, r {radius}");
+        summary.add("gratings".to_owned(), worst_of(&drawn, &exact), 1.0, &label);
     }
     summary.finish();
 }

@@ -21,7 +21,7 @@ pub(crate) struct Sampling {
     wide: Option<Wide>,
 }
 
-const MOST: usize = 9;
+const MOST: usize = 12;
 
 /// Below this penumbra radius in pixels, squares averaged over the disc take fewer points than discs averaged over the
 /// square.
@@ -35,8 +35,13 @@ const TIPS: f64 = 2.4;
 
 impl Sampling {
     /// For a penumbra radius in pixels; whether circles about as large as the disc, or halves of them, give the density tips: there few
-    /// points are up to two levels off.
-    pub(crate) fn new(radius: f64, has_tips: impl Fn() -> bool) -> Self {
+    /// points are up to two levels off. The same where a pixel sees a crowd of ends of edges, such as a fine grating's: what each leaves
+    /// adds up.
+    pub(crate) fn new(
+        radius: f64,
+        has_tips: impl Fn() -> bool,
+        is_crowded: impl FnOnce() -> bool,
+    ) -> Self {
         let mut sampling = Self {
             window: Window::Disc,
             unit: radius,
@@ -56,7 +61,11 @@ impl Sampling {
             };
             sampling.over_disc(radius, count);
         } else if radius < 3.0 {
+            let crowded = radius < WIDE && is_crowded();
             let count = match radius {
+                ..0.8 if crowded => 12,
+                ..1.1 if crowded => 8,
+                ..WIDE if crowded => 6,
                 ..0.32 => 9,
                 0.32..0.4 => 8,
                 0.4..0.52 => 7,

@@ -179,8 +179,13 @@ pub(super) struct WideArc<S: Simd> {
     pub(super) radius: f32,
 }
 
-/// The share of a square's side that its smaller span counts at least: a quotient of two tiny differences has no digits.
-pub(super) const LEAST_SPAN: f32 = 0.004;
+/// The smaller span of a square's side is no less than these shares of half of the side and of the disc's radius: a quotient of two tiny
+/// differences has no digits, and what it lacks adds up over all edges of a grating.
+pub(super) fn least_span(half: f32, radius: f32) -> f32 {
+    const OF_SIDE: f32 = 0.02;
+    const OF_RADIUS: f32 = 0.006;
+    (OF_SIDE * half).max(OF_RADIUS * radius)
+}
 
 /// As the line that touches the arc nearest to the pixel, moved by the arc's mean distance from it: the mean square along it,
 /// of the disc's chord and of the square, over twice the arc's radius. Both are taken for normally distributed.
@@ -192,7 +197,7 @@ pub(super) fn wide_arc<S: Simd>(simd: S, columns: f32x16<S>, arc: &WideArc<S>) -
         .max(f32x16::splat(simd, 1e-12))
         .sqrt();
     let (across, down) = (x.abs() / far, f32x16::splat(simd, arc.center_y.abs()) / far);
-    let least = f32x16::splat(simd, LEAST_SPAN * arc.half);
+    let least = f32x16::splat(simd, least_span(arc.half, arc.radius));
     let spans = [
         across.max(down) * arc.half,
         (across.min(down) * arc.half).max(least),

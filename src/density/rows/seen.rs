@@ -7,7 +7,7 @@ use glam::DVec2;
 
 use super::Window;
 use super::arcs::{ArcEnd, Power, RowArc};
-use super::kernels::{LEAST_SPAN, Ramp, RowCut, RowLine, Wide, WideArc, WideLine};
+use super::kernels::{Ramp, RowCut, RowLine, Wide, WideArc, WideLine, least_span};
 use super::pieces::{Form, Piece, Slant};
 use super::stroke::RowForm;
 
@@ -157,7 +157,7 @@ impl Piece {
                 let distance = (self.from - view.origin).perp_dot(along);
                 RowForm::WideLine(WideLine {
                     distance: view.ramp(distance, along.y),
-                    spans: [a.max(b), a.min(b).max(LEAST_SPAN * half)],
+                    spans: [a.max(b), a.min(b).max(least_span(half, radius))],
                     radius,
                 })
             }
