@@ -87,7 +87,7 @@ pub(crate) fn fill<S: Simd>(
     }
 }
 
-/// From so many ends of edges on that a pixel averages over, few points leave too much: of 2,700 gratings' none with fewer passed 0.8 level.
+/// From so many ends of edges on that a pixel averages over, few points leave too much: of 2,700 gratings none with fewer passed 0.8 level.
 const CROWD: u32 = 8;
 
 /// Whether more than a third of a circle about as large as the disc is among the edges, to `side` of the square that pixels average

@@ -117,9 +117,9 @@ fn reach(radius: f64) -> f64 {
 
 impl Shadow {
     /// The key of the shadow's mask and the place for it, on so many pixels a scene unit; none where the shadow is not one
-    /// of a rounded rectangle with circular corners, this is thinner than the steps that keys round to or larger than 100,000 pixels, no [`Grid`] has so many pixels a
-    /// unit, or one mask would be larger than a picture may be. The mask is within the tolerance before it is rounded, or within 0.25 level
-    /// where the penumbra is narrower than 3 px.
+    /// of a rounded rectangle with circular corners, this is thinner than the steps that keys round to or larger than 100,000 pixels, no
+    /// [`Grid`] has so many pixels a unit, or one mask would be larger than a picture may be. The mask is within the tolerance before it is
+    /// rounded, or within 0.8 level where the penumbra is narrower than 3 px, as [`Method::Direct`](crate::plan::Method::Direct) is.
     ///
     /// Cards that scroll by whole pixels under a directional light have one key each. Under any other light a shadow is larger than its card
     /// and moves by more, so that its sides are elsewhere in their pixels at each step: there it pays to draw it anew, as it does where
