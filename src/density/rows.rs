@@ -67,8 +67,19 @@ pub(crate) struct Lattice {
     pub(crate) density: f64,
 }
 
-/// Columns after which a piece's numbers are taken anew in double precision: beyond, single precision would show.
-const STRETCH: i64 = 512;
+/// Columns of an entry that begins at `first` in stretches, counted from there, each with where it is seen from: after so many columns a
+/// piece's numbers are taken anew in double precision, as beyond single precision would show.
+#[inline(always)]
+fn stretches(first: i64, columns: Range<i64>) -> impl Iterator<Item = (i64, Range<i64>)> {
+    const STRETCH: i64 = 512;
+    let mut at = columns.start;
+    core::iter::from_fn(move || {
+        let origin = first + (at - first) / STRETCH * STRETCH;
+        let stretch = at..(origin + STRETCH).min(columns.end);
+        at = stretch.end;
+        (!stretch.is_empty()).then_some((origin, stretch))
+    })
+}
 
 impl Rows {
     /// Takes the outline's edges, in the windows' unit, for windows of the kind given and pixels that average over these points.
@@ -228,8 +239,7 @@ impl Rows {
             let from = entry.first + skipped * stride;
             let to = entry.end.min(columns.end);
             if from < to {
-                let place = (from - left) as usize;
-                let strides = ((to - from + stride - 1) / stride) as usize;
+                let strides = (to - from + stride - 1) / stride;
                 let wide = points.wide.filter(|_| entry.line == ALL);
                 let (points, line) = match wide {
                     Some(_) => (&Points::CENTER, 0),
@@ -237,13 +247,8 @@ impl Rows {
                 };
                 let piece = &self.pieces[entry.piece as usize];
                 let line = &points.lines[line];
-                let mut part = &mut values[place..place + strides * LANES];
-                let mut column = from;
-                // Long ones stretch by stretch, counted from where the piece begins.
-                while !part.is_empty() {
-                    let origin = entry.first + (column - entry.first) / STRETCH * STRETCH;
-                    let stop = (origin + STRETCH - column).min(part.len() as i64);
-                    let (now, rest) = part.split_at_mut(stop as usize);
+                for (origin, part) in stretches(entry.first, from..from + strides * stride) {
+                    let now = &mut values[(part.start - left) as usize..(part.end - left) as usize];
                     let x = lattice.start + origin as f64 * lattice.pitch;
                     simd.vectorize(
                         #[inline(always)]
@@ -264,7 +269,7 @@ impl Rows {
                             };
                             let stroke = Stroke {
                                 form,
-                                columns: lanes(simd) + (column - origin) as f32,
+                                columns: lanes(simd) + (part.start - origin) as f32,
                                 step: LANES as f32,
                                 halves,
                                 line,
@@ -273,8 +278,6 @@ impl Rows {
                             stroke.add_to(simd, now);
                         },
                     );
-                    part = rest;
-                    column += stop;
                 }
             }
         }

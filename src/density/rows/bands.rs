@@ -14,7 +14,7 @@ use super::pieces::{self, Piece};
 use super::seen::View;
 use super::spans::Spans;
 use super::stroke::Stroke;
-use super::{Lattice, Points, STRETCH, Window};
+use super::{Lattice, Points, Window, stretches};
 use crate::density::Sink;
 use crate::density::lanes::{LANES, spread};
 use crate::density::sweep::Sweep;
@@ -234,13 +234,8 @@ impl Bands {
             let line = &points.lines[entry.line as usize];
             let top = self.top + line.offset;
             let place = |column: i64| (column - columns.start) as usize * SIDE;
-            let mut part = &mut self.tiles[place(from)..place(to)];
-            let mut column = from;
-            // Long ones stretch by stretch, counted from where the piece begins.
-            while !part.is_empty() {
-                let origin = entry.first + (column - entry.first) / STRETCH * STRETCH;
-                let stop = (origin + STRETCH).min(to);
-                let (now, rest) = part.split_at_mut((stop - column) as usize * SIDE);
+            for (origin, part) in stretches(entry.first, from..to) {
+                let now = &mut self.tiles[place(part.start)..place(part.end)];
                 simd.vectorize(
                     #[inline(always)]
                     || {
@@ -255,7 +250,8 @@ impl Bands {
                         let halves = [spread(simd, entry.halves[0]), spread(simd, entry.halves[1])];
                         let stroke = Stroke {
                             form: piece.seen_from(&view, bottom, halves),
-                            columns: f32x16::from_slice(simd, &COLUMNS) + (column - origin) as f32,
+                            columns: f32x16::from_slice(simd, &COLUMNS)
+                                + (part.start - origin) as f32,
                             step: SIDE as f32,
                             halves,
                             line,
@@ -264,8 +260,6 @@ impl Bands {
                         stroke.add_to(simd, now);
                     },
                 );
-                part = rest;
-                column = stop;
             }
         }
         let values = &mut self.spans.values;
