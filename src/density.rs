@@ -6,7 +6,6 @@ pub(crate) mod blend;
 mod buffer;
 pub(crate) mod circle;
 mod coverage;
-pub(crate) mod crowd;
 mod cubic;
 pub(crate) mod direct;
 mod dither;

@@ -71,6 +71,7 @@
 //! | `finish.rs`, `finish/` | `finish`: rims and their shading, a model a file; detail on what is flat |
 //! | `apart.rs` | boxes that overlap, in groups apart from each other |
 //! | `scan.rs` | the pixels of a triangle, row by row |
+//! | `squares.rs` | how much of something is in one place |
 //! | `bin/penumbral` | the command line |
 //!
 //! # Features
@@ -122,6 +123,7 @@ mod scene;
 mod scratch;
 mod shadow;
 mod shape;
+mod squares;
 mod svg;
 #[cfg(feature = "svg-path")]
 mod svg_path;

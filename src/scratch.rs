@@ -7,7 +7,6 @@ use fearless_simd::Level;
 use glam::DVec2;
 
 use crate::compose::Fusion;
-use crate::density::crowd::Crowd;
 use crate::density::grid::GridScratch;
 use crate::density::nine_patch::NinePatchScratch;
 use crate::density::rows::{BAND, Bands, Rows};
@@ -16,6 +15,7 @@ use crate::hidden::inside::Inside;
 use crate::mesh::MeshCache;
 use crate::mesh::halving::HalvingScratch;
 use crate::outline::Edge;
+use crate::squares::Squares;
 
 /// Meshes that are kept: enough for one picture's few outlines, and at most some tens of megabytes.
 const KEPT_MESHES: NonZeroUsize = NonZeroUsize::MIN.saturating_add(15);
@@ -30,7 +30,7 @@ pub struct Scratch {
     edges: Vec<Vec<Edge>>,
     /// Vertices of one curve.
     pub(crate) vertices: Vec<DVec2>,
-    pub(crate) crowd: Crowd,
+    pub(crate) squares: Squares,
     pub(crate) rows: Rows,
     pub(crate) bands: Bands,
     pub(crate) nine_patch: NinePatchScratch,
@@ -66,7 +66,7 @@ impl Scratch {
             level,
             edges: Vec::new(),
             vertices: Vec::new(),
-            crowd: Crowd::default(),
+            squares: Squares::default(),
             rows: Rows::default(),
             bands: Bands::default(),
             nine_patch: NinePatchScratch::default(),

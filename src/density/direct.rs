@@ -37,8 +37,14 @@ pub(crate) fn fill<S: Simd>(
     let side = averaged_side(radius * scale) / scale;
     let has_tips = || has_tips(edges, radius, side);
     let is_crowded = || {
-        let ends = edges.iter().map(|edge| edge.from() - bounds.0);
-        scratch.crowd.most(ends, 2.0 * radius + side) >= CROWD
+        // Two squares are as wide as what a pixel averages over. They begin at the outline's corner: where it is changes nothing.
+        let width = 2.0 * radius + side;
+        scratch.squares.clear();
+        for edge in edges {
+            let end = (edge.from() - bounds.0) * (2.0 / width);
+            scratch.squares.add(end, 1.0);
+        }
+        scratch.squares.most() >= CROWD
     };
     let sampling = Sampling::new(radius * scale, has_tips, is_crowded);
     let radius = radius * scale;
@@ -88,7 +94,7 @@ pub(crate) fn fill<S: Simd>(
 }
 
 /// From so many ends of edges on that a pixel averages over, few points leave too much: of 2,700 gratings none with fewer passed 0.8 level.
-const CROWD: u32 = 8;
+const CROWD: f64 = 8.0;
 
 /// Whether more than a third of a circle about as large as the disc is among the edges, to `side` of the square that pixels average
 /// over: about its centre the density has a tip.

@@ -1,12 +1,11 @@
 //! How much of curves one disc may see.
 
-use std::collections::HashMap;
-
 use glam::DVec2;
 
 use crate::outline::Edge;
 use crate::path::{Segment, arc_steps};
 use crate::shape::Shape;
+use crate::squares::Squares;
 
 /// A chord that is longer than so many radii is counted as one of that length, about its middle: such curves are nearly straight for what
 /// sees them.
@@ -60,29 +59,23 @@ pub(super) fn push_arcs<'a>(
 /// Lengths are counted by squares of the radius's size, of which a disc meets nine at most. They begin at `corner`, that of what has the
 /// curves: where it is changes nothing.
 pub(super) fn crowding(chords: &Chords, radius: f64, corner: DVec2) -> f64 {
-    let mut lengths: HashMap<[i64; 2], f64> = HashMap::new();
+    let mut lengths = Squares::default();
     let place = |point: DVec2| (point - corner) / radius;
     for chord in chords {
         let [start, end] = chord.map(place);
         add(start, end, &mut lengths);
     }
-    let about = |&[x, y]: &[i64; 2]| {
-        let near = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| [x + dx, y + dy]));
-        near.filter_map(|square| lengths.get(&square)).sum::<f64>()
-    };
-    let most = lengths.keys().map(about).fold(0.0, f64::max);
-    (most / core::f64::consts::TAU).max(1.0)
+    (lengths.most() / core::f64::consts::TAU).max(1.0)
 }
 
 /// Adds a chord's length, in radii, to the squares that it is in.
-fn add(start: DVec2, end: DVec2, lengths: &mut HashMap<[i64; 2], f64>) {
+fn add(start: DVec2, end: DVec2, lengths: &mut Squares) {
     let (chord, middle) = (end - start, start.midpoint(end));
     let length = chord.length().min(LONGEST);
     let way = chord.normalize_or_zero() * length;
     let count = length.ceil().max(1.0);
     for part in 0..count as u32 {
         let at = middle + way * ((f64::from(part) + 0.5) / count - 0.5);
-        let square = [at.x, at.y].map(|v| v.floor() as i64);
-        *lengths.entry(square).or_default() += length / count;
+        lengths.add(at, length / count);
     }
 }
