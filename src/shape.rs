@@ -1,6 +1,7 @@
 //! Shapes: what a caster looks like on its own plane.
 
 mod clipped;
+mod loops;
 mod simple;
 mod stroke;
 
@@ -276,13 +277,13 @@ impl Shape {
             .iter()
             .filter(|c| !c.segments.is_empty())
             .flat_map(|contour| {
-                let of_segments = contour.segments.iter().flat_map(|segment| match *segment {
-                    Segment::Line(to) => [to; 4],
-                    Segment::Quad(a, to) => [a, to, to, to],
-                    Segment::Cubic(a, b, to) => [a, b, to, to],
+                let of_segments = contour.walk().flat_map(|(from, segment)| match *segment {
+                    Segment::Line(to) => [to; 3],
+                    Segment::Quad(a, to) => [a, to, to],
+                    Segment::Cubic(a, b, to) => [a, b, to],
                     Segment::Arc(arc) => {
-                        let extent = (arc.u * arc.u + arc.v * arc.v).map(f64::sqrt);
-                        [arc.center - extent, arc.center + extent, arc.to, arc.to]
+                        let [a, b] = arc.hull(from);
+                        [a, b, arc.to]
                     }
                 });
                 core::iter::once(contour.start).chain(of_segments)

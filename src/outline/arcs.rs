@@ -4,6 +4,7 @@
 //! along the part: then the arc lies to one side of the curve in its first half and to the other in the second, farthest from it near a
 //! quarter and three quarters of the way.
 
+use glam::DVec2;
 use libm::{atan2, cbrt, sin, tan};
 
 use super::chords::Chords;
@@ -42,29 +43,29 @@ impl Contour {
     }
 }
 
-/// The arc through a part's ends that encloses as much with its chord.
-fn arc(part: &Part) -> Option<Arc> {
-    let chord = part.chord();
-    if is_hairpin(part) {
-        return None;
+impl Arc {
+    /// The arc from one point to another that encloses half of an area with its chord, on the right of that if it is above 0 where y
+    /// points up; none where it would be straight or turn far.
+    pub(crate) fn enclosing(from: DVec2, to: DVec2, double_area: f64) -> Option<Self> {
+        let chord = to - from;
+        // A turn by t encloses t / 6 (1 + t² / 30 + t⁴ / 840) of half the chord's square: this turned round.
+        let x = 6.0 * double_area / chord.length_squared();
+        let x2 = x * x;
+        let sweep = x * (1.0 - x2 * (1.0 / 30.0 - x2 * (3.0 / 1400.0)));
+        if !(STRAIGHT..=FARTHEST).contains(&sweep.abs()) {
+            return None;
+        }
+        let center = from + chord / 2.0 + chord.perp() * (0.5 / tan(sweep / 2.0));
+        let spoke = from - center;
+        Some(Self {
+            center,
+            radius: chord.length() * 0.5 / sin(sweep.abs() / 2.0),
+            start: atan2(spoke.y, spoke.x),
+            sweep,
+            from,
+            to,
+        })
     }
-    // A turn by t encloses t / 6 (1 + t² / 30 + t⁴ / 840) of half the chord's square: this turned round.
-    let x = 6.0 * part.double_area() / chord.length_squared();
-    let x2 = x * x;
-    let sweep = x * (1.0 - x2 * (1.0 / 30.0 - x2 * (3.0 / 1400.0)));
-    if !(STRAIGHT..=FARTHEST).contains(&sweep.abs()) {
-        return None;
-    }
-    let center = part.from + chord / 2.0 + chord.perp() * (0.5 / tan(sweep / 2.0));
-    let spoke = part.from - center;
-    Some(Arc {
-        center,
-        radius: chord.length() * 0.5 / sin(sweep.abs() / 2.0),
-        start: atan2(spoke.y, spoke.x),
-        sweep,
-        from: part.from,
-        to: part.to,
-    })
 }
 
 impl Fit for Arcs {
@@ -78,7 +79,9 @@ impl Fit for Arcs {
 
     fn new(part: &Part) -> Self {
         let chords = Chords::new(part);
-        let arc = arc(part);
+        let arc = (!is_hairpin(part))
+            .then(|| Arc::enclosing(part.from, part.to, part.double_area()))
+            .flatten();
         let deviation = arc.map_or(chords.deviation(), |arc| {
             let distances = ASKED.map(|t| ((part.at(t) - arc.center).length() - arc.radius).abs());
             BETWEEN * distances.into_iter().fold(0.0, f64::max)
@@ -118,8 +121,6 @@ impl Fit for Arcs {
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec2;
-
     use super::*;
     use crate::density::at_point;
     use crate::outline::{Outline, sides};

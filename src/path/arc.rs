@@ -5,6 +5,9 @@ use core::f64::consts::{PI, TAU};
 use glam::DVec2;
 use libm::{acos, atan2, cos, sin};
 
+/// How far an arc turns, in radians, for all of its ellipse to hold it well: a quarter turn is in the same box either way.
+const SHORT: f64 = 1.2;
+
 /// The points `center + u cos θ + v sin θ`, θ from `start` to `start + sweep` (radians): an arc of the ellipse with the
 /// conjugate half diameters `u` and `v`. An affine map maps the three vectors and keeps the angles.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -88,6 +91,17 @@ impl EllipseArc {
             to,
             ..*self
         }
+    }
+
+    /// Two corners of a box that holds it, as well as its ends: short arcs of large ellipses take little room.
+    pub(crate) fn hull(&self, from: DVec2) -> [DVec2; 2] {
+        if self.sweep.abs() > SHORT {
+            let extent = (self.u * self.u + self.v * self.v).map(f64::sqrt);
+            return [self.center - extent, self.center + extent];
+        }
+        // Where its ends' tangents meet.
+        let spokes = (from - self.center) + (self.to - self.center);
+        [self.center + spokes / (1.0 + cos(self.sweep)); 2]
     }
 
     /// Into how many lines it is cut.
