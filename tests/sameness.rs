@@ -28,7 +28,7 @@ const GOLDEN: [(&str, u64); 13] = [
     ("meshes", 0x987d_b4f0_8d2c_d2e5),
     ("pictures", 0x8749_68b5_df28_5312),
     ("svg", 0x07fa_0889_28ec_53c5),
-    ("strokes", 0xad27_7956_0423_718b),
+    ("strokes", 0xfb0a_49bb_3f47_be65),
     ("tilted", 0x2ea0_6559_12c2_56b8),
 ];
 

@@ -1,7 +1,9 @@
-//! Shapes of loops of lines, where lines that follow a curve are arcs again.
+//! Shapes of loops of lines, where lines that follow a curve are arcs and cubics again.
 //!
 //! What unites and cuts shapes knows nothing but lines, and where there are curves thousands of them. From one vertex to another as many
-//! as can be become a single arc that encloses as much with their chord, or a line.
+//! as can be become a single arc that encloses as much with their chord, or a line, or a cubic where that takes many more.
+
+mod cubic;
 
 use glam::DVec2;
 use libm::atan2;
@@ -11,8 +13,11 @@ use crate::error::Result;
 use crate::outline::{Arc, sides};
 use crate::path::{EllipseArc, FillRule, Path, Segment};
 
+/// How many times as many lines as an arc a cubic is to be in place of.
+const CUBIC: usize = 3;
+
 impl Shape {
-    /// The shape of loops that do not cross, or none without any. If `within` is told, lines are arcs and longer lines that all of them are
+    /// The shape of loops that do not cross, or none without any. If `within` is told, lines are curves and longer lines that all of them are
     /// no farther from.
     pub(super) fn of_loops(loops: &[Vec<DVec2>], within: Option<f64>) -> Result<Option<Self>> {
         if loops.is_empty() {
@@ -57,9 +62,16 @@ fn push_fitted(path: &mut Path, points: &[DVec2], within: f64) {
         path.begin(*first);
     }
     while rest.len() > 1 {
-        let (count, segment) = longest(rest, within);
-        path.push(segment);
-        rest = &rest[count..];
+        let line = (1, Segment::Line(rest[1]));
+        let mut found = longest(rest, line, |points| fit(points, within));
+        // A cubic costs as much as some arcs.
+        let more = CUBIC * found.0;
+        let cubic = |points: &[DVec2]| cubic::fit(points, within);
+        if let Some(segment) = rest.get(..=more).and_then(cubic) {
+            found = longest(rest, (more, segment), cubic);
+        }
+        path.push(found.1);
+        rest = &rest[found.0..];
     }
 }
 
@@ -72,12 +84,14 @@ fn sharpest(points: &[DVec2]) -> usize {
     sharpest.map_or(0, |(line, _)| (line + 1) % points.len())
 }
 
-/// The segment from the first of some points on in place of as many lines as can be, and how many these are.
-fn longest(points: &[DVec2], within: f64) -> (usize, Segment) {
-    let (mut count, mut found) = (1, Segment::Line(points[1]));
+/// As many lines as can be from the first of some points on in place of which there is one segment, and that; from some of them on.
+fn longest(
+    points: &[DVec2],
+    (mut count, mut found): (usize, Segment),
+    fit: impl Fn(&[DVec2]) -> Option<Segment>,
+) -> (usize, Segment) {
     let mut reaches = |more: usize| {
-        let fitted = points.get(..=count + more);
-        let fitted = fitted.and_then(|points| fit(points, within));
+        let fitted = points.get(..=count + more).and_then(&fit);
         if let Some(segment) = fitted {
             (count, found) = (count + more, segment);
         }
@@ -94,7 +108,7 @@ fn longest(points: &[DVec2], within: f64) -> (usize, Segment) {
     (count, found)
 }
 
-/// A segment in place of lines that are nowhere farther from it, or none.
+/// A line or an arc in place of lines that are nowhere farther from it, or none.
 fn fit(points: &[DVec2], within: f64) -> Option<Segment> {
     let (&[from, ..], &[.., to]) = (points, points) else {
         return None;

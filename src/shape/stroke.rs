@@ -124,9 +124,9 @@ impl Shape {
             cover: super::Cover::Rule(FillRule::NonZero),
         };
         let extent = filled.extent() + f64::from(stroke.width);
-        // Half of it is left to arcs. On the outer side of a bend lines are twice as far from the curve as they are along the path.
-        let within = FLATNESS.min(RELATIVE_FLATNESS * extent) / 2.0;
-        let flatness = within / 2.0;
+        // Lines are a third of it inside of the curve and their ends as much outside, which are the ends of arcs in place of them.
+        let flatness = FLATNESS.min(RELATIVE_FLATNESS * extent) / 3.0;
+        let within = 2.0 * flatness;
         let mut count = lines(&filled.contours, flatness);
         at_most("lines of a stroke", count, MAX_LINES)?;
         let pen = Pen::new(stroke, flatness);
@@ -232,9 +232,9 @@ mod tests {
         assert!(off.max_element() < FLATNESS, "{min} {max}");
         // The same where they meet in a right corner.
         let (_, max) = of("M0 0Q10 0 10 10Q10 20 0 20M10 10Q20 10 30 20", pen);
-        assert!((max.y - 22.0).abs() < 1e-3);
+        assert!((max.y - 22.0).abs() < FLATNESS);
         let (min, _) = of("M10 0C10 5 5 10 0 10C-5 10-10 15-10 20", pen);
-        assert!((min.x + 12.0).abs() < 1e-9);
+        assert!((min.x + 12.0).abs() < FLATNESS);
         let (min, max) = of(
             "M20 0Q10 0 0 10Q10 20 20 20",
             pen.with_miter_limit(2.0).unwrap(),

@@ -20,7 +20,7 @@ use crate::path::arc_steps;
 const SHARPEST: f64 = 1e6;
 
 /// Lines that are united at once where a way has more bends than this that are tighter than the pen is wide.
-const PIECE: usize = 16;
+const PIECE: usize = 4;
 
 pub(super) struct Pen {
     /// Half its width.
@@ -101,6 +101,18 @@ struct Sides {
     wedges: Vec<Vec<DVec2>>,
 }
 
+/// The loops of pieces of a way, each with the next: what lies within both is gone before others cross it.
+fn united(mut pieces: Vec<Vec<Vec<DVec2>>>) -> Vec<Vec<DVec2>> {
+    while pieces.len() > 1 {
+        let pairs = pieces.chunks(2).map(|pair| match pair {
+            [a, b] => resolve_loops(&[a.as_slice(), b].concat(), Winding::Positive, false),
+            rest => rest.concat(),
+        });
+        pieces = pairs.collect();
+    }
+    pieces.concat()
+}
+
 impl Pen {
     pub(super) fn new(stroke: &Stroke, flatness: f64) -> Self {
         let limit = f64::from(stroke.miter_limit);
@@ -171,9 +183,9 @@ impl Pen {
             };
             let caps = [cap(start == 0), cap(end == last)];
             let piece = self.along(&way[start..=end], caps, count)?;
-            pieces.append(&mut resolve_loops(&piece, Winding::Positive, false));
+            pieces.push(resolve_loops(&piece, Winding::Positive, false));
             if end == last {
-                return Ok(pieces);
+                return Ok(united(pieces));
             }
             start = end;
         }
