@@ -10,8 +10,8 @@ use core::f32::consts::PI;
 use common::worst_of;
 use penumbral::plan::Method;
 use penumbral::{
-    FillRule, Grid, Incomplete, Light, MeshVertex, Path, PixelOptions, Pose, Scratch, ShadowMesh,
-    Shape, Stroke, TiltedShadow, Tolerance,
+    FillRule, Grid, Incomplete, Light, MeshOptions, MeshVertex, Path, PixelOptions, Pose, Scratch,
+    ShadowMesh, Shape, Stroke, TiltedShadow, Tolerance,
 };
 
 const LIGHT: [f64; 3] = [80.0, 30.0, 300.0];
@@ -393,6 +393,36 @@ fn meshes_of_curved_casters_keep_their_tolerance() {
                 assert!(mesh.is_complete(), "{degrees} degrees");
                 assert!(error <= 1.0, "{degrees} degrees: {error} levels");
             }
+        }
+    }
+}
+
+/// Where a caster is sharp, rings of circles of many radii may cross.
+#[test]
+fn meshes_of_sharp_casters_keep_their_tolerance() {
+    let rhombus = |height: f32| {
+        let (top, bottom) = (100.0 - height / 2.0, 100.0 + height / 2.0);
+        vec![[10.0, 100.0], [100.0, bottom], [190.0, 100.0], [100.0, top]]
+    };
+    let triangle = vec![[10.0, 100.0], [100.0, 121.0], [190.0, 100.0]];
+    let tolerance = Tolerance::levels(4.0).unwrap();
+    for (points, x, radius, angle) in [
+        (rhombus(42.0), 100.0, 800.0, 0.3),
+        (rhombus(42.0), 53.0, 150.0, 0.8),
+        (rhombus(2.0), 53.0, 10.0, 0.6),
+        (triangle, 53.0, 150.0, 0.4),
+    ] {
+        let light = Light::new([x, 0.0, 600.0], radius).unwrap();
+        let shape = Shape::polygon(&[points], FillRule::NonZero).unwrap();
+        let pose = Pose::turned(120.0, [100.0; 2], [0.3, 1.0], angle).unwrap();
+        let shadow = light.cast_posed(&shape, &pose, 0.0).unwrap();
+        let options = MeshOptions::new(tolerance);
+        for options in [options, options.quick()] {
+            let mesh = shadow.mesh(options);
+            let error = mesh_error(&mesh, &shadow);
+            println!("{} triangles, {error:.3} levels", mesh.indices().len() / 3);
+            assert!(mesh.is_complete(), "{:?}", mesh.incomplete());
+            assert!(error <= 4.0, "{shape:?}: {error} levels");
         }
     }
 }

@@ -61,12 +61,26 @@ pub(super) struct Refinement {
 
 impl Refinement {
     pub(super) fn new(field: Field, options: MeshOptions, rings: Vec<Ring>) -> Self {
+        Self::of(Measure::new(field, options.profile), options, rings)
+    }
+
+    /// Whether rings cross, so that a part of one could not be built.
+    pub(super) fn is_broken(&self) -> bool {
+        self.broken
+    }
+
+    /// The same with other rings.
+    pub(super) fn with_rings(self, rings: Vec<Ring>) -> Self {
+        Self::of(self.measure, self.options, rings)
+    }
+
+    fn of(measure: Measure, options: MeshOptions, rings: Vec<Ring>) -> Self {
         let offset = |ring: &Ring| match options.profile {
             Profile::Disc => ring.0.value - Profile::Disc.at(ring.0.t),
             _ => 0.0,
         };
         let mut refinement = Self {
-            measure: Measure::new(field, options.profile),
+            measure,
             options,
             triangles: Triangles::new(),
             broken: false,

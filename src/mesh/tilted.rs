@@ -99,33 +99,27 @@ impl TiltedShadow {
         let pieces = pieces(levels, rounding_levels(step, radius));
         let count = circles.iter().map(Vec::len).sum::<usize>() * pieces.knots.len();
         let has_rings = least == radius && 2 * count <= options.max_vertices;
-        let rings = match facing.filter(|_| has_rings) {
-            Some(faces_up) => {
-                let circles: Vec<_> = circles
-                    .into_iter()
-                    .map(|mut circles| {
-                        if !faces_up {
-                            circles.reverse();
-                        }
-                        circles
-                    })
-                    .collect();
-                let ring = |knot: &Knot| (*knot, tangent_loops(&circles, knot.t, radius * share));
-                pieces.knots.iter().map(ring).collect()
-            }
-            None => {
-                // Parts of the shadow see the caster from above, and others from below; or all rings meet where the caster
-                // touches its receiver, or are too many: the outermost is all that is taken of them.
-                let knot = |t: f64| Knot {
-                    t,
-                    value: f64::from(u8::from(t > 0.0)),
-                };
-                vec![
-                    (knot(-1.0), reached(&circles, share)),
-                    (knot(1.0), Vec::new()),
-                ]
-            }
+        // Parts of the shadow may see the caster from above, and others from below; or all rings meet where the caster touches its
+        // receiver, or are too many, or cross where it is sharp: the outermost is all that is taken of them.
+        let outermost = || {
+            let knot = |t: f64| Knot {
+                t,
+                value: f64::from(u8::from(t > 0.0)),
+            };
+            vec![
+                (knot(-1.0), reached(&circles, share)),
+                (knot(1.0), Vec::new()),
+            ]
         };
+        let all_rings = |faces_up: bool| {
+            let mut circles = circles.clone();
+            if !faces_up {
+                circles.iter_mut().for_each(|circles| circles.reverse());
+            }
+            let ring = |knot: &Knot| (*knot, tangent_loops(&circles, knot.t, radius * share));
+            pieces.knots.iter().map(ring).collect()
+        };
+        let rings = facing.filter(|_| has_rings).map(all_rings);
         // Where the caster touches its receiver there is no end to samples.
         let part = if facing.is_some() || least < radius {
             1.0
@@ -141,7 +135,11 @@ impl TiltedShadow {
             cells: TiltedCells::new(&loops, [min - center, max - center], sampled),
             radius: sampled,
         };
-        Refinement::new(field, options, rings).run(center, step, unsure)
+        let mut refinement = Refinement::new(field, options, rings.unwrap_or_else(outermost));
+        if refinement.is_broken() {
+            refinement = refinement.with_rings(outermost());
+        }
+        refinement.run(center, step, unsure)
     }
 
     /// Whether all points of a box see the caster's loops turn left where y points up, or all of them right, or some so and others
