@@ -14,10 +14,10 @@ use crate::outline::winding;
 use crate::path::{Contour, Curve, Part, Segment};
 
 /// More pieces than this are not looked through.
-const MOST_PIECES: usize = 20_000;
+const MOST_PIECES: usize = 1 << 17;
 
 /// How often pieces are compared at most: for each, and besides.
-const MOST_COMPARISONS: (usize, usize) = (256, 10_000);
+const MOST_COMPARISONS: (usize, usize) = (2048, 10_000);
 
 /// A curve's fewest pieces.
 const FEWEST: u32 = 4;
@@ -50,6 +50,32 @@ struct Piece {
     /// A box that holds it.
     min: DVec2,
     max: DVec2,
+}
+
+/// A piece that the sweep has come to: its box, as far as the sweep asks for it.
+#[derive(Clone, Copy)]
+struct Open {
+    index: usize,
+    /// Where it ends along the sweep, and what it takes across.
+    end: f64,
+    least: f64,
+    most: f64,
+}
+
+impl Open {
+    fn new(index: usize, piece: &Piece, axis: usize) -> Self {
+        Self {
+            index,
+            end: piece.max[axis],
+            least: piece.min[1 - axis],
+            most: piece.max[1 - axis],
+        }
+    }
+
+    /// Whether its box meets another's, which the sweep has come to as well.
+    fn meets(&self, other: &Self) -> bool {
+        self.least <= other.most && other.least <= self.most
+    }
 }
 
 /// The directions from one counter-clockwise to another, less than half a turn further on.
@@ -187,10 +213,13 @@ impl Pieces {
         order.sort_unstable_by(|&a, &b| low(a).total_cmp(&low(b)));
         let mut left = MOST_COMPARISONS.0 * order.len() + MOST_COMPARISONS.1;
         // The pieces that the sweep has come to and not left yet.
-        let mut open: Vec<usize> = Vec::new();
-        for next in order {
-            open.retain(|&other| self.pieces[other].max[axis] >= low(next));
-            if open.len() > left || open.iter().any(|&other| self.may_meet(other, next)) {
+        let mut open: Vec<Open> = Vec::new();
+        for index in order {
+            let start = low(index);
+            open.retain(|other| other.end >= start);
+            let next = Open::new(index, &self.pieces[index], axis);
+            let meets = |other: &Open| other.meets(&next) && self.may_meet(other.index, index);
+            if open.len() > left || open.iter().any(meets) {
                 return false;
             }
             left -= open.len();
@@ -199,11 +228,10 @@ impl Pieces {
         true
     }
 
+    /// Whether two pieces whose boxes meet may do so.
     fn may_meet(&self, a: usize, b: usize) -> bool {
         let (one, other) = (&self.pieces[a], &self.pieces[b]);
-        let boxes_meet = one.min.cmple(other.max).all() && other.min.cmple(one.max).all();
-        boxes_meet
-            && !one.is_apart_from(other, self.tiny)
+        !one.is_apart_from(other, self.tiny)
             && !(one.contour == other.contour && self.goes_on(a.min(b), a.max(b)))
     }
 
