@@ -231,8 +231,8 @@ impl Pieces {
     /// Whether two pieces whose boxes meet may do so.
     fn may_meet(&self, a: usize, b: usize) -> bool {
         let (one, other) = (&self.pieces[a], &self.pieces[b]);
-        !one.is_apart_from(other, self.tiny)
-            && !(one.contour == other.contour && self.goes_on(a.min(b), a.max(b)))
+        let goes_on = || one.contour == other.contour && self.goes_on(a.min(b), a.max(b));
+        !(one.is_apart_from(other, self.tiny) || goes_on())
     }
 
     /// Whether no piece on one of the two ways between two pieces of a contour heads back.
