@@ -4,8 +4,8 @@ use core::hint::black_box;
 use core::ops::Range;
 
 use fearless_simd::{
-    Bytes, Level, Select, Simd, SimdBase, SimdFloat, SimdFrom, SimdInt, SimdSplit, dispatch,
-    f32x16, i32x16, u16x16, u16x32, u32x16,
+    Bytes, Level, Select, Simd, SimdBase, SimdFrom, SimdInt, SimdSplit, dispatch, f32x16, u16x16,
+    u16x32, u32x16,
 };
 
 use super::Sink;
@@ -39,6 +39,11 @@ const BLOCK: usize = 4 * PIXELS;
 
 /// The upper byte of 16 bits.
 const UPPER: u16 = 0xff00;
+
+/// Added to a number far below it, this rounds it to a whole one, as single precision has no bits for less: these are the lower ones of
+/// the sum then.
+const WHOLE: f32 = (1_u32 << 23) as f32;
+const LOWER: u32 = 0xffff;
 
 impl Rgba8<'_> {
     /// Blends the paint by 8-bit coverage, from column `first` of row `y` on.
@@ -288,9 +293,8 @@ impl<S: Simd> Brush<S> {
     #[inline(always)]
     fn coat(&self, densities: f32x16<S>) -> Coat<u16x32<S>> {
         let brush = anew(self);
-        let opacity: i32x16<S> = (densities * self.strength + 0.5).to_int();
-        let opacity: u32x16<S> = opacity.bitcast();
-        let opacity: u16x32<S> = (opacity | (opacity << 16)).bitcast();
+        let opacity: u32x16<S> = (densities * self.strength + WHOLE).bitcast();
+        let opacity: u16x32<S> = ((opacity & LOWER) | (opacity << 16)).bitcast();
         Coat {
             left: !opacity,
             red_blue: high(brush.red_blue, opacity) + self.thresholds,
