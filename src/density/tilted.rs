@@ -1,7 +1,7 @@
 //! The closed form for casters of many radii: the area of a polygon on the light's unit disc, pixel by pixel.
 //!
 //! Tiles keep of a loop what their discs can meet: elsewhere a path of edges counts by the angle that it spans alone, so that
-//! a few long lines stand for it.
+//! a few long lines stand for it. Small tiles keep so much of what large ones do, and pixels that are averages of theirs.
 
 use core::f64::consts::{SQRT_2, TAU};
 use core::ops::Range;
@@ -20,8 +20,9 @@ use crate::tilted::{Circle, TiltedShadow};
 /// From this penumbra radius on, in pixels, it takes more points of the light to tell what it hides of a pixel.
 const WIDE: f64 = 1.0;
 
-/// The side of a tile, in pixels.
-const TILE: i64 = 16;
+/// The sides of tiles, in pixels: of large ones and of the small ones that they are made of.
+const LARGE: i64 = 16;
+const SMALL: i64 = 4;
 
 /// The fraction of the light's disc that loops hide from a point.
 pub(crate) fn at_point(loops: &[Vec<Circle>], point: DVec2) -> f64 {
@@ -78,60 +79,132 @@ pub(crate) fn fill(
         .iter()
         .flatten()
         .map(|circle| circle.radius / circle.scale);
+    let mut all = Near::default();
+    for circles in &loops {
+        all.push(circles);
+    }
     let mut painter = Painter {
         radii: radii.fold(f64::MAX..0.0, |all, radius| {
             all.start.min(radius)..all.end.max(radius)
         }),
-        loops,
         plane: shadow.plane.map(|circle| place(&circle)),
         phase: frame.phase,
-        near: Vec::new(),
-        whole: 0.0,
+        near: Near::default(),
+        seen: Vec::new(),
         edges: scratch.take(),
         clipped: scratch.take(),
         spare: scratch.take(),
     };
-    for top in
-        (rows.start.div_euclid(TILE)..=(rows.end - 1).div_euclid(TILE)).map(|tile| tile * TILE)
-    {
-        for left in (columns.start.div_euclid(TILE)..=(columns.end - 1).div_euclid(TILE))
-            .map(|tile| tile * TILE)
-        {
-            let middle = DVec2::new(left as f64, top as f64) + painter.phase + TILE as f64 / 2.0;
-            painter.keep_near(middle);
-            let constant = painter.near.is_empty().then(|| fraction(painter.whole));
-            if constant == Some(0.0) {
-                continue;
+    let (mut large, mut small) = (Near::default(), Near::default());
+    each_tile(LARGE, &columns, &rows, |corner, columns, rows| {
+        painter.keep_near(&all, corner, LARGE, &mut large);
+        if large.is_light() {
+            return;
+        }
+        each_tile(SMALL, &columns, &rows, |corner, columns, rows| {
+            painter.keep_near(&large, corner, SMALL, &mut small);
+            if small.is_light() {
+                return;
             }
-            for row in top.max(rows.start)..(top + TILE).min(rows.end) {
+            let constant = small.is_empty().then(|| fraction(small.whole));
+            for row in rows {
                 let y = (row - frame.first[1]) as u32;
-                for column in left.max(columns.start)..(left + TILE).min(columns.end) {
+                for column in columns.clone() {
                     let x = (column - frame.first[0]) as u32;
                     if hidden.is_some_and(|hidden| hidden.hides(x, y)) {
                         continue;
                     }
-                    let density = constant.unwrap_or_else(|| painter.pixel([column, row]));
+                    let density = constant.unwrap_or_else(|| painter.pixel([column, row], &small));
                     if density > 0.0 {
                         sink.values(y..y + 1, x..x + 1, &[density as f32]);
                     }
                 }
             }
-        }
-    }
+        });
+    });
     for edges in [painter.edges, painter.clipped, painter.spare] {
         scratch.give(edges);
     }
 }
 
+/// Calls `draw` with the first pixel of each tile of a side that has some of the columns and rows, and those that it has.
+fn each_tile(
+    side: i64,
+    columns: &Range<i64>,
+    rows: &Range<i64>,
+    mut draw: impl FnMut([i64; 2], Range<i64>, Range<i64>),
+) {
+    let tiles = |of: &Range<i64>| {
+        let (start, end) = (of.start, of.end);
+        let all = start.div_euclid(side)..=(end - 1).div_euclid(side);
+        let first = all.map(move |tile| tile * side);
+        first.map(move |first| (first, start.max(first)..end.min(first + side)))
+    };
+    for (top, rows) in tiles(rows) {
+        for (left, columns) in tiles(columns) {
+            draw([left, top], columns, rows.clone());
+        }
+    }
+}
+
+/// Loops that discs about the points of a tile may meet, short of what they cannot, and twice the area that all others span.
+#[derive(Default)]
+struct Near {
+    circles: Vec<Circle>,
+    /// Where each loop ends among them.
+    ends: Vec<usize>,
+    whole: f64,
+}
+
+impl Near {
+    fn clear(&mut self, whole: f64) {
+        self.circles.clear();
+        self.ends.clear();
+        self.whole = whole;
+    }
+
+    fn push(&mut self, circles: &[Circle]) {
+        self.circles.extend_from_slice(circles);
+        self.end_loop();
+    }
+
+    fn end_loop(&mut self) {
+        self.ends.push(self.circles.len());
+    }
+
+    fn loops(&self) -> impl Iterator<Item = &[Circle]> {
+        let starts = core::iter::once(0).chain(self.ends.iter().copied());
+        let ranges = starts.zip(&self.ends);
+        ranges.map(|(start, &end)| &self.circles[start..end])
+    }
+
+    fn is_empty(&self) -> bool {
+        self.ends.is_empty()
+    }
+
+    /// Whether nothing is in the shadow.
+    fn is_light(&self) -> bool {
+        self.is_empty() && fraction(self.whole) == 0.0
+    }
+
+    fn at_point(&self, point: DVec2) -> f64 {
+        let near: f64 = self
+            .loops()
+            .map(|circles| double_area(circles, point))
+            .sum();
+        fraction(self.whole + near)
+    }
+}
+
 struct Painter {
-    loops: Vec<Vec<Circle>>,
     plane: [Circle; 3],
     /// The least and the largest radius of all circles, in pixels.
     radii: Range<f64>,
     phase: DVec2,
-    /// Of the tile: the loops that discs may meet, short of what they cannot, and twice the area that all others span.
-    near: Vec<Vec<Circle>>,
-    whole: f64,
+    /// What a pixel's own discs may meet.
+    near: Near,
+    /// A loop as seen from the middle of a tile.
+    seen: Vec<Seen>,
     /// A pixel's loops as they are seen from one point of the light.
     edges: Vec<Edge>,
     /// The part of them in the pixel.
@@ -162,88 +235,82 @@ impl Seen {
 }
 
 impl Painter {
-    /// Finds what of the loops discs about the points of a tile can meet.
-    fn keep_near(&mut self, middle: DVec2) {
-        // To the farthest corner of the tile's corner pixels.
-        let reach = TILE as f64 / 2.0 * SQRT_2;
-        self.near.clear();
-        self.whole = 0.0;
-        for circles in &self.loops {
-            let seen: Vec<Seen> = circles
-                .iter()
-                .map(|circle| Seen {
-                    at: circle.seen_from(middle),
-                    // Without end where the caster touches its receiver.
-                    motion: reach * circle.scale / circle.radius,
-                })
-                .collect();
-            let count = circles.len();
+    /// Finds what of loops discs about the points of a tile can meet, whatever of it is drawn.
+    fn keep_near(&mut self, loops: &Near, corner: [i64; 2], side: i64, kept: &mut Near) {
+        let corner = DVec2::from(corner.map(|at| at as f64));
+        let half = side as f64 / 2.0;
+        let middle = corner + self.phase + half;
+        let reach = half * SQRT_2;
+        kept.clear(loops.whole);
+        for circles in loops.loops() {
+            self.seen.clear();
+            self.seen.extend(circles.iter().map(|circle| Seen {
+                at: circle.seen_from(middle),
+                // Without end where the caster touches its receiver.
+                motion: reach * circle.scale / circle.radius,
+            }));
+            let (seen, count) = (&self.seen, circles.len());
             let is_far = |from: usize| seen[from].is_far(&seen[(from + 1) % count]);
             let Some(first) = (0..count).find(|&index| !is_far(index)) else {
-                self.whole += double_area(circles, middle);
+                kept.whole += double_area(circles, middle);
                 continue;
             };
-            let mut kept = vec![circles[first]];
+            kept.circles.push(circles[first]);
             // The vertex from which a path out of reach began.
             let mut start = None;
-            for index in (first + 1..=first + count).map(|index| index % count) {
+            for index in (first + 1..first + count).map(|index| index % count) {
                 let next = (index + 1) % count;
-                if index == first {
-                    break;
-                }
                 if is_far(index) {
                     let from = *start.get_or_insert_with(|| {
-                        kept.push(circles[index]);
+                        kept.circles.push(circles[index]);
                         index
                     });
                     if from != index && !passes(&seen[from], &seen[index], &seen[next]) {
-                        kept.push(circles[index]);
+                        kept.circles.push(circles[index]);
                         start = Some(index);
                     }
                 } else {
-                    kept.push(circles[index]);
+                    kept.circles.push(circles[index]);
                     start = None;
                 }
             }
-            self.near.push(kept);
+            kept.end_loop();
         }
     }
 
-    fn pixel(&mut self, at: [i64; 2]) -> f64 {
-        let middle = DVec2::new(at[0] as f64, at[1] as f64) + self.phase + 0.5;
+    fn pixel(&mut self, [x, y]: [i64; 2], loops: &Near) -> f64 {
+        let middle = DVec2::new(x as f64, y as f64) + self.phase + 0.5;
         let radius = self.radius_at(middle);
         let side = averaged_side(radius);
         if side == 0.0 {
-            return self.at_point(middle);
+            return loops.at_point(middle);
         }
+        let mut near = core::mem::take(&mut self.near);
+        self.keep_near(loops, [x, y], 1, &mut near);
         let is_wide = self.radii.end > WIDE;
-        if radius < quadrature::COVERAGE_RADIUS {
-            let mut hidden = |(light, weight)| weight * self.coverage(middle, light);
+        let density = if near.is_empty() {
+            fraction(near.whole)
+        } else if radius < quadrature::COVERAGE_RADIUS {
+            let mut hidden = |(light, weight)| weight * self.coverage(middle, light, &near);
             // Where the caster touches its receiver, what is hard in the pixel is seen with what is wide.
-            return if is_wide {
+            if is_wide {
                 quadrature::exact_disc(1).map(&mut hidden).sum()
             } else {
                 quadrature::disc().map(&mut hidden).sum()
-            };
-        }
-        quadrature::square(radius)
-            .map(|(offset, weight)| weight * self.at_point(middle + offset * side))
-            .sum()
-    }
-
-    fn at_point(&self, point: DVec2) -> f64 {
-        let near: f64 = self
-            .near
-            .iter()
-            .map(|circles| double_area(circles, point))
-            .sum();
-        fraction(self.whole + near)
+            }
+        } else {
+            quadrature::square(radius)
+                .map(|(offset, weight)| weight * near.at_point(middle + offset * side))
+                .sum()
+        };
+        self.near = near;
+        density
     }
 
     /// The part of a pixel that the caster hides from a point of the light's unit disc.
-    fn coverage(&mut self, middle: DVec2, light: DVec2) -> f64 {
-        let mut double_area = self.whole / TAU * 2.0;
-        for circles in &self.near {
+    fn coverage(&mut self, middle: DVec2, light: DVec2, near: &Near) -> f64 {
+        let mut double_area = near.whole / TAU * 2.0;
+        for circles in near.loops() {
             let shade = |circle: &Circle| {
                 (circle.center - light * circle.radius) / circle.scale.max(f64::MIN_POSITIVE)
             };
