@@ -70,19 +70,15 @@ pub(crate) fn fill(
         return;
     }
     let place = |circle: &Circle| circle.placed(frame.scale, frame.base);
-    let loops: Vec<Vec<Circle>> = shadow
-        .loops
-        .iter()
-        .map(|circles| circles.iter().map(place).collect())
-        .collect();
-    let radii = loops
-        .iter()
-        .flatten()
-        .map(|circle| circle.radius / circle.scale);
     let mut all = Near::default();
-    for circles in &loops {
-        all.push(circles);
+    for circles in &shadow.loops {
+        all.circles.extend(circles.iter().map(place));
+        all.end_loop();
     }
+    let radii = all
+        .circles
+        .iter()
+        .map(|circle| circle.radius / circle.scale);
     let mut painter = Painter {
         radii: radii.fold(f64::MAX..0.0, |all, radius| {
             all.start.min(radius)..all.end.max(radius)
@@ -161,11 +157,6 @@ impl Near {
         self.circles.clear();
         self.ends.clear();
         self.whole = whole;
-    }
-
-    fn push(&mut self, circles: &[Circle]) {
-        self.circles.extend_from_slice(circles);
-        self.end_loop();
     }
 
     fn end_loop(&mut self) {
