@@ -175,6 +175,34 @@ mod tests {
     }
 
     #[test]
+    fn hulls_hold_arcs_and_little_more_where_they_are_short() {
+        let (u, v) = (DVec2::new(300.0, 40.0), DVec2::new(-90.0, 200.0));
+        for sweep in [-3.0, -1.1, -0.02, 0.02, 1.1, 1.3, 3.0] {
+            for start in [0.0, 1.0, 2.0, 4.0] {
+                let at = |angle: f64| u * cos(angle) + v * sin(angle);
+                let arc = EllipseArc {
+                    center: DVec2::ZERO,
+                    u,
+                    v,
+                    start,
+                    sweep,
+                    to: at(start + sweep),
+                };
+                let from = at(start);
+                let [a, b] = arc.hull(from);
+                let min = from.min(arc.to).min(a).min(b) - 1e-9;
+                let max = from.max(arc.to).max(a).max(b) + 1e-9;
+                for part in 0..=20 {
+                    let at = at(start + sweep * f64::from(part) / 20.0);
+                    assert!(at.cmpge(min).all() && at.cmple(max).all());
+                }
+                let size = (max - min).max_element();
+                assert!(sweep.abs() > 1.0 || size < 10.0, "{sweep}: {size}");
+            }
+        }
+    }
+
+    #[test]
     fn small_radii_grow_and_flags_choose_the_way_round() {
         for (large, positive) in [(false, false), (false, true), (true, false), (true, true)] {
             let mut path = Path::new();

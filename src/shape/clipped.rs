@@ -17,7 +17,7 @@ const RELATIVE_FLATNESS: f64 = 1e-6;
 const FINEST: f64 = 1e-10;
 
 impl Shape {
-    /// The part of the shape inside another one, or none. Where something is cut away, curves become arcs within 0.0002
+    /// The part of the shape inside another one, or none. Where something is cut away, curves are right within 0.0002
     /// scene units and a millionth of the smaller one's extent, but no finer than 10^-10 of the larger one's.
     ///
     /// # Errors
@@ -53,7 +53,7 @@ impl Shape {
         let flatness = FLATNESS
             .min(RELATIVE_FLATNESS * smaller)
             .max(FINEST * larger);
-        // Half of it is left to arcs.
+        // Half of it is left to the curves in place of lines.
         let within = flatness / 2.0;
         let count = |shape: &Self| lines(&shape.contours, within);
         at_most(

@@ -94,8 +94,8 @@ impl Stroke {
 }
 
 impl Shape {
-    /// What a pen draws along a path, open contours as well as closed ones, as SVG has it. Its curves are arcs within 0.0005 scene units,
-    /// and no coarser than four millionths of the larger side of the path's box and the width together.
+    /// What a pen draws along a path, open contours as well as closed ones, as SVG has it. Curves are right within 0.0005 scene units, and
+    /// no coarser than four millionths of the larger side of the path's box and the width together.
     ///
     /// # Errors
     /// A path without segments or that draws nothing, a number that is not finite or passes
@@ -155,6 +155,7 @@ mod tests {
 
     use super::*;
     use crate::outline::{Outline, nearest_share, sides, winding};
+    use crate::path::Contour;
 
     const JOINS: [LineJoin; 3] = [LineJoin::Miter, LineJoin::Round, LineJoin::Bevel];
     const CAPS: [LineCap; 3] = [LineCap::Butt, LineCap::Square, LineCap::Round];
@@ -225,20 +226,37 @@ mod tests {
 
     #[test]
     fn curves_end_across_where_they_head() {
-        let of = |data, stroke| drawn(data, &stroke).hull().unwrap();
         let pen = Stroke::new(4.0).unwrap();
-        let (min, max) = of("M0 0Q10 0 10 10", pen);
+        let drawn = |data| drawn(data, &pen.with_miter_limit(2.0).unwrap());
+        let has = |shape: &Shape, corners: &[[f64; 2]]| {
+            let ends = shape.contours.iter().flat_map(Contour::walk);
+            let ends: Vec<DVec2> = ends.map(|(_, segment)| segment.end()).collect();
+            for &corner in corners {
+                let is_there = |end: &DVec2| end.distance(DVec2::from_array(corner)) < 1e-9;
+                assert!(ends.iter().any(is_there), "{corner:?} of {ends:?}");
+            }
+        };
+        let bend = drawn("M0 0Q10 0 10 10");
+        has(&bend, &[[0.0, -2.0], [0.0, 2.0], [8.0, 10.0], [12.0, 10.0]]);
+        let (min, max) = bend.hull().unwrap();
         let off = (min - DVec2::new(0.0, -2.0)).abs() + (max - DVec2::new(12.0, 10.0)).abs();
         assert!(off.max_element() < FLATNESS, "{min} {max}");
         // The same where they meet in a right corner.
-        let (_, max) = of("M0 0Q10 0 10 10Q10 20 0 20M10 10Q20 10 30 20", pen);
-        assert!((max.y - 22.0).abs() < FLATNESS);
-        let (min, _) = of("M10 0C10 5 5 10 0 10C-5 10-10 15-10 20", pen);
-        assert!((min.x + 12.0).abs() < FLATNESS);
-        let (min, max) = of(
-            "M20 0Q10 0 0 10Q10 20 20 20",
-            pen.with_miter_limit(2.0).unwrap(),
+        let corner = drawn("M0 0Q10 0 10 10Q10 20 0 20M10 10Q20 10 30 20");
+        has(
+            &corner,
+            &[[0.0, -2.0], [0.0, 2.0], [0.0, 18.0], [0.0, 22.0]],
         );
+        let (_, max) = corner.hull().unwrap();
+        assert!((max.y - 22.0).abs() < FLATNESS);
+        let bends = drawn("M10 0C10 5 5 10 0 10C-5 10-10 15-10 20");
+        has(
+            &bends,
+            &[[-12.0, 20.0], [-8.0, 20.0], [8.0, 0.0], [12.0, 0.0]],
+        );
+        let (min, _) = bends.hull().unwrap();
+        assert!((min.x + 12.0).abs() < FLATNESS);
+        let (min, max) = drawn("M20 0Q10 0 0 10Q10 20 20 20").hull().unwrap();
         assert!((min.x + 2.0 * 2.0_f64.sqrt()).abs() < 1e-9, "{min} {max}");
     }
 
