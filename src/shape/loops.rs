@@ -9,7 +9,7 @@ use glam::DVec2;
 use libm::atan2;
 
 use super::{Cover, Shape};
-use crate::error::Result;
+use crate::error::{MAX_COORDINATE, Result};
 use crate::outline::{Arc, sides};
 use crate::path::{EllipseArc, FillRule, Path, Segment};
 
@@ -31,12 +31,12 @@ impl Shape {
             }
             Self::path(&path, FillRule::NonZero)
         };
-        if let Some(within) = within {
-            let fitted = of(&|path, points| push_fitted(path, points, within))?;
-            // Loops that touch are drawn as they are faster than by a rule for curves.
-            if fitted.cover == Cover::Simple {
-                return Ok(Some(fitted));
-            }
+        // Loops that touch are drawn as they are faster than by a rule for curves; those thinner than that may be nothing.
+        if let Some(within) = within
+            && let Ok(fitted) = of(&|path, points| push_fitted(path, points, within))
+            && fitted.cover == Cover::Simple
+        {
+            return Ok(Some(fitted));
         }
         of(&push_lines).map(Some)
     }
@@ -125,7 +125,8 @@ fn fit(points: &[DVec2], within: f64) -> Option<Segment> {
     let double_area = lines()
         .map(|(start, end)| (start - from).perp_dot(end - from))
         .sum();
-    let arc = Arc::enclosing(from, to, double_area)?;
+    let arc = Arc::enclosing(from, to, double_area)
+        .filter(|arc| arc.radius + arc.center.abs().max_element() < MAX_COORDINATE)?;
     let is_near = |(start, end): (DVec2, DVec2)| {
         let off = |at: DVec2| (at.distance(arc.center) - arc.radius).abs();
         let turn = (start - arc.center).perp_dot(end - arc.center);

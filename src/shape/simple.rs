@@ -21,15 +21,21 @@ pub(super) fn borders(
     hull: (DVec2, DVec2),
 ) -> Option<Vec<Contour>> {
     let contours: Vec<Contour> = contours.iter().filter_map(enclosing).collect();
-    let pieces = REACHES
-        .into_iter()
-        .filter_map(|reach| Pieces::new(&contours, hull, reach))
+    // Lines are their own chords, however near these are to be.
+    let reaches = if contours.iter().all(Contour::is_straight) {
+        &REACHES[..1]
+    } else {
+        &REACHES
+    };
+    let pieces = reaches
+        .iter()
+        .filter_map(|&reach| Pieces::new(&contours, hull, reach))
         .find(Pieces::are_apart)?;
     let borders: Vec<Contour> = contours
         .into_iter()
+        .zip(pieces.windings()?)
         .enumerate()
-        .filter_map(|(index, contour)| {
-            let outside = pieces.winding_round(index);
+        .filter_map(|(index, (contour, outside))| {
             let turn = pieces.turn(index);
             let covers = |winding: i32| match rule {
                 FillRule::NonZero => winding != 0,

@@ -95,7 +95,8 @@ impl Stroke {
 
 impl Shape {
     /// What a pen draws along a path, open contours as well as closed ones, as SVG has it. Curves are right within 0.0005 scene units, and
-    /// no coarser than four millionths of the larger side of the path's box and the width together.
+    /// no coarser than four millionths of the larger side of the box of all points, control points among them, and the width together;
+    /// but next to a bend tighter than the pen, where an end that is not round cuts across it, by up to some hundred times that.
     ///
     /// # Errors
     /// A path without segments or that draws nothing, a number that is not finite or passes
@@ -277,6 +278,22 @@ mod tests {
             let round = area(&drawn(dot, &pen.with_cap(LineCap::Round)));
             assert!((round - 4.0 * PI).abs() < 1e-2);
             assert!(Shape::stroke(&Path::from_svg(dot).unwrap(), &pen).is_err());
+        }
+    }
+
+    #[test]
+    fn slight_bows_and_hairlines_are_drawn() {
+        // The circles that bows are arcs of pass the largest coordinate.
+        for (length, bow) in [(400.0, 0.002), (1000.0, 0.01), (3000.0, 0.001)] {
+            let data = format!("M0 0Q{} {bow} {length} 0", length / 2.0);
+            let off = area(&drawn(&data, &Stroke::new(4.0).unwrap())) - 4.0 * length;
+            assert!(off.abs() < 0.05, "{data}: {off}");
+        }
+        // No thicker than the tolerance.
+        for (data, width) in [("M0 0H1000", 1e-4), ("M0 0Q12 0.000012 24 0", 2.4e-6)] {
+            let pen = Stroke::new(width).unwrap().with_cap(LineCap::Round);
+            let (min, max) = drawn(data, &pen).hull().unwrap();
+            assert!((max - min).min_element() > 0.0, "{data}");
         }
     }
 

@@ -16,6 +16,9 @@ const STEPS: usize = 12;
 /// How near the moment is to come, over the chord: far below what curves are fitted to.
 const NEAR: f64 = 1e-13;
 
+/// The longest line, over the chord: its ends and its middle tell how far it is from a curve.
+const LINE: f64 = 0.25;
+
 /// Points and weights of Gauss-Legendre quadrature from 0 to 1, exact for the area and the moment under a cubic.
 const GAUSS: [[f64; 2]; 5] = [
     [0.046_910_077_030_668, 0.118_463_442_528_094_54],
@@ -34,7 +37,8 @@ pub(super) fn fit(points: &[DVec2], within: f64) -> Option<Segment> {
         return None;
     };
     let chord = to - from;
-    if points.len() < 4 || chord == DVec2::ZERO {
+    let longest = points.windows(2).map(|line| line[0].distance(line[1]));
+    if points.len() < 4 || longest.fold(0.0, f64::max) > LINE * chord.length() {
         return None;
     }
     // Chords from 0 to 1.

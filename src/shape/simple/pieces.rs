@@ -16,8 +16,8 @@ use crate::path::{Contour, Curve, Part, Segment};
 /// More pieces than this are not looked through.
 const MOST_PIECES: usize = 1 << 17;
 
-/// How often pieces are compared at most: for each, and besides.
-const MOST_COMPARISONS: (usize, usize) = (2048, 10_000);
+/// How often pieces are compared at most, and contours and their pieces looked through for how they wind: some hundredths of a second each.
+const MOST_COMPARISONS: usize = 1 << 24;
 
 /// A curve's fewest pieces.
 const FEWEST: u32 = 4;
@@ -211,7 +211,7 @@ impl Pieces {
         let mut order: Vec<usize> = (0..self.pieces.len()).collect();
         let low = |index: usize| self.pieces[index].min[axis];
         order.sort_unstable_by(|&a, &b| low(a).total_cmp(&low(b)));
-        let mut left = MOST_COMPARISONS.0 * order.len() + MOST_COMPARISONS.1;
+        let mut left = MOST_COMPARISONS;
         // The pieces that the sweep has come to and not left yet.
         let mut open: Vec<Open> = Vec::new();
         for index in order {
@@ -266,20 +266,27 @@ impl Pieces {
         if double_area < 0.0 { -1 } else { 1 }
     }
 
-    /// How often all other contours wind round a contour: as often round one of its points as round any other, and as
-    /// their chords do, since it is nowhere between these and the contours.
-    pub(super) fn winding_round(&self, contour: usize) -> i32 {
-        let point = self.of(contour)[0].from;
-        let others = self.contours.iter().enumerate();
-        others
-            .filter(|&(other, (_, min, max))| {
+    /// How often all other contours wind round each contour, or none where that would be too much to look through: as often round one of
+    /// its points as round any other, and as their chords do, since it is nowhere between these and the contours.
+    pub(super) fn windings(&self) -> Option<Vec<i32>> {
+        let pairs = self.contours.len().checked_pow(2)?;
+        let mut left = MOST_COMPARISONS.checked_sub(pairs)?;
+        let all = 0..self.contours.len();
+        let round = all.map(|contour| {
+            let point = self.of(contour)[0].from;
+            let others = self.contours.iter().enumerate();
+            let about = others.filter(|&(other, (_, min, max))| {
                 other != contour && point.cmpge(*min).all() && point.cmple(*max).all()
-            })
-            .map(|(other, _)| {
-                let chords = self.of(other).iter();
-                winding(chords.map(|piece| (piece.from, piece.to)), point)
-            })
-            .sum()
+            });
+            about
+                .map(|(other, _)| {
+                    let chords = self.of(other).iter();
+                    left = left.checked_sub(chords.len())?;
+                    Some(winding(chords.map(|piece| (piece.from, piece.to)), point))
+                })
+                .sum()
+        });
+        round.collect()
     }
 }
 

@@ -19,8 +19,11 @@ use crate::path::arc_steps;
 /// The largest `1 / cos²` of half a turn at which the two sides of the way are said to meet.
 const SHARPEST: f64 = 1e6;
 
-/// Lines that are united at once where a way has more bends than this that are tighter than the pen is wide.
+/// Lines that are united at once where the way bends more tightly than the pen is wide, if it does so more often than this.
 const PIECE: usize = 4;
+
+/// One of so many bends that is tight makes all of the way be united in pieces.
+const OFTEN: usize = 16;
 
 pub(super) struct Pen {
     /// Half its width.
@@ -135,6 +138,12 @@ impl Pen {
         self.half <= (self.half + self.flatness) * turn.cos_squared.sqrt()
     }
 
+    /// Whether the way bends from one line to the next more tightly than the pen is wide.
+    fn is_tight(&self, before: &Line, after: &Line) -> bool {
+        let turn = Turn::new(before, after);
+        after.bends && self.back(&turn) >= before.room().min(after.room())
+    }
+
     /// Loops that wind round what is covered along a way. `count` is how many lines strokes have so far.
     pub(super) fn cover(
         &self,
@@ -142,12 +151,12 @@ impl Pen {
         closed: bool,
         count: &mut usize,
     ) -> Result<Vec<Vec<DVec2>>> {
-        let is_tight = |pair: &&[Line]| {
-            let turn = Turn::new(&pair[0], &pair[1]);
-            pair[1].bends && self.back(&turn) >= pair[0].room().min(pair[1].room())
-        };
-        if way.windows(2).filter(is_tight).count() > PIECE {
-            return self.in_pieces(way, closed, count);
+        let is_tight = |pair: &&[Line]| self.is_tight(&pair[0], &pair[1]);
+        let bends = way.windows(2).filter(is_tight).count();
+        if bends > PIECE {
+            // Where many are tight, gentle ones cross them as well.
+            let are_many = OFTEN * bends > way.len();
+            return self.in_pieces(way, closed, are_many, count);
         }
         let ([first, ..], [.., last]) = (way, way) else {
             return Ok(Vec::new());
@@ -164,15 +173,24 @@ impl Pen {
 
     /// The same of a way with bends tighter than the pen is wide: there each line's end crosses all others', so that few at a time are
     /// united first. Each piece begins with the last line of the one before: no gap of rounding is between them.
-    fn in_pieces(&self, way: &[Line], closed: bool, count: &mut usize) -> Result<Vec<Vec<DVec2>>> {
+    fn in_pieces(
+        &self,
+        way: &[Line],
+        closed: bool,
+        are_many: bool,
+        count: &mut usize,
+    ) -> Result<Vec<Vec<DVec2>>> {
         let mut way = way.to_vec();
         if closed && let Some(first) = way.iter().position(|line| !line.is_turn()) {
             way.extend_from_within(..=first);
         }
-        let mut pieces = Vec::new();
+        let is_tight = |index: usize| self.is_tight(&way[index], &way[index + 1]);
+        let (mut all, mut tight) = (Vec::new(), Vec::new());
         let (mut start, last) = (0, way.len() - 1);
-        loop {
-            let next = (start + PIECE..last).find(|&index| !way[index].is_turn());
+        while start < last {
+            let bends = is_tight(start);
+            let is_end = |index: usize| is_tight(index) != bends || bends && index >= start + PIECE;
+            let next = (start + 1..last).find(|&index| is_end(index) && !way[index].is_turn());
             let end = next.unwrap_or(last);
             let cap = |is_end: bool| {
                 if is_end && !closed {
@@ -182,13 +200,17 @@ impl Pen {
                 }
             };
             let caps = [cap(start == 0), cap(end == last)];
-            let piece = self.along(&way[start..=end], caps, count)?;
-            pieces.push(resolve_loops(&piece, Winding::Positive, false));
-            if end == last {
-                return Ok(united(pieces));
+            let mut piece = self.along(&way[start..=end], caps, count)?;
+            if bends || are_many {
+                tight.push(resolve_loops(&piece, Winding::Positive, false));
+            } else {
+                all.append(&mut united(core::mem::take(&mut tight)));
+                all.append(&mut piece);
             }
             start = end;
         }
+        all.append(&mut united(tight));
+        Ok(all)
     }
 
     /// Along an open way, with its first and its last cap.
