@@ -312,6 +312,11 @@ pub(crate) fn closed_lines(polygon: &[DVec2]) -> Vec<Edge> {
         .collect()
 }
 
+/// The angle from one direction to another, within a half turn: above 0 to the left where y points up.
+pub(crate) fn turn(from: DVec2, to: DVec2) -> f64 {
+    atan2(from.perp_dot(to), from.dot(to))
+}
+
 /// How far along a line, from 0 to 1, is what of it is nearest to a point: 0 where it has no length.
 pub(crate) fn nearest_share(from: DVec2, to: DVec2, point: DVec2) -> f64 {
     let along = to - from;

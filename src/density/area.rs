@@ -10,7 +10,7 @@ use core::f64::consts::{FRAC_PI_4, PI, TAU};
 use glam::DVec2;
 use libm::{asin, atan2, sin};
 
-use crate::outline::{Arc, Edge};
+use crate::outline::{Arc, Edge, turn};
 
 /// The fraction of the disc of `radius` about `point` that lies inside the edges; for radius 0, whether the point does.
 pub(crate) fn at_point<'a>(
@@ -28,7 +28,7 @@ pub(crate) fn at_point<'a>(
     let double_area: f64 = edges
         .map(|edge| match edge {
             Edge::Line(line) if disc > 0.0 => of_line(place(line.from), place(line.to)),
-            Edge::Line(line) | Edge::Border(line) => angle(place(line.from), place(line.to)),
+            Edge::Line(line) | Edge::Border(line) => turn(place(line.from), place(line.to)),
             Edge::Arc(arc) => of_arc(&arc.mapped(factor, place), disc),
         })
         .sum();
@@ -55,11 +55,6 @@ pub(crate) fn half_area(t: f64) -> f64 {
     f64::midpoint(t * ((1.0 - t) * (1.0 + t)).sqrt(), asin(t))
 }
 
-/// The angle from `a` to `b` seen from the origin, within a half turn.
-fn angle(a: DVec2, b: DVec2) -> f64 {
-    atan2(a.perp_dot(b), a.dot(b))
-}
-
 /// Twice the area that a line spans with the unit disc about the origin.
 pub(super) fn of_line(from: DVec2, to: DVec2) -> f64 {
     /// The square of a distance from which on an end has few digits left for the disc.
@@ -76,22 +71,22 @@ pub(super) fn of_line(from: DVec2, to: DVec2) -> f64 {
     // distances would lose all digits where the disc is small.
     let distance = from.perp_dot(along);
     if distance.abs() >= 1.0 {
-        return angle(from, to);
+        return turn(from, to);
     }
     let half_chord = ((1.0 - distance) * (1.0 + distance)).sqrt();
     let start = from.dot(along);
     let first = start.max(-half_chord);
     let last = (start + length).min(half_chord);
     if first >= last {
-        return angle(from, to);
+        return turn(from, to);
     }
     let foot = from - start * along;
     let mut area = distance * (last - first);
     if first > start {
-        area += angle(from, foot + first * along);
+        area += turn(from, foot + first * along);
     }
     if last < start + length {
-        area += angle(foot + last * along, to);
+        area += turn(foot + last * along, to);
     }
     area
 }
@@ -132,7 +127,7 @@ fn of_arc(arc: &Arc, disc: f64) -> f64 {
 /// up to a half turn plus half of its own sweep, in its own direction: then the angle of its chord has the other sign
 /// and is at least a quarter turn for sweeps of at most a half turn. (A smaller one of the other sign is rounding.)
 fn angle_of_arc(arc: &Arc, from_inside: bool) -> f64 {
-    let chord = angle(arc.from, arc.to);
+    let chord = turn(arc.from, arc.to);
     if from_inside && chord * arc.sweep < 0.0 && chord.abs() > FRAC_PI_4 {
         chord + if arc.sweep > 0.0 { TAU } else { -TAU }
     } else {

@@ -17,7 +17,7 @@ use crate::error::Result;
 use crate::limits::at_most;
 use crate::mesh::regions::{Region, Triangles, Vertex, faces};
 use crate::mesh::tangents::{ProjectionCircle, tangent_loops};
-use crate::outline::{Edge, Outline, sides};
+use crate::outline::{self, Edge, Outline, sides};
 use crate::shape::Shape;
 
 /// By how much curves turn from one face to the next at most, radians: 6 degrees.
@@ -161,7 +161,7 @@ fn polygon(edges: &[Edge]) -> Vec<DVec2> {
 fn guarded(points: &[DVec2], width: f64) -> Vec<DVec2> {
     let count = points.len();
     let along = |i: usize| points[(i + 1) % count] - points[i % count];
-    let is_sharp = |i: usize| angle_between(along(i + count - 1), along(i)) > SHARP;
+    let is_sharp = |i: usize| outline::turn(along(i + count - 1), along(i)).abs() > SHARP;
     let mut guarded = Vec::with_capacity(count);
     for i in 0..count {
         guarded.push(points[i]);
@@ -173,10 +173,6 @@ fn guarded(points: &[DVec2], width: f64) -> Vec<DVec2> {
         }
     }
     guarded
-}
-
-fn angle_between(a: DVec2, b: DVec2) -> f64 {
-    libm::atan2(a.perp_dot(b), a.dot(b)).abs()
 }
 
 struct Builder {
@@ -268,7 +264,7 @@ impl Builder {
             .filter(|edge| edge.is_constraint_edge() && edge.to().data().ring == Some(ring))
             .map(|edge| (at(edge.to().position()) - at(vertex.position())).normalize_or_zero());
         let (a, b) = (neighbours.next()?, neighbours.next()?);
-        if neighbours.next().is_some() || angle_between(-a, b) <= SHARP {
+        if neighbours.next().is_some() || outline::turn(-a, b).abs() <= SHARP {
             return None;
         }
         // Halfway between both edges, as far as its distance from either is 1.

@@ -21,7 +21,7 @@ use super::{Claim, Family, Parameter, Technique};
 use crate::density::{reach, square_average};
 use crate::error::{self, Result};
 use crate::grid::Grid;
-use crate::outline::sides;
+use crate::outline::{sides, turn};
 use crate::scratch::Scratch;
 use crate::shadow::Shadow;
 
@@ -170,13 +170,13 @@ impl Disc {
     /// Along the circle, from the direction of one point to that of another, the shorter way: the integral of
     /// (1 + b/2 cos φ) / (a + b cos φ) dφ = φ/2 + (1 - a/2) ∫ dφ / (a + b cos φ), φ from the centre's own direction.
     fn circle(&self, from: DVec2, to: DVec2) -> f64 {
-        let turned = atan2(from.perp_dot(to), from.dot(to));
+        let turned = turn(from, to);
         let axis = if self.b > 0.0 {
             self.center / (self.b / 2.0)
         } else {
             DVec2::X
         };
-        let first = atan2(axis.perp_dot(from), axis.dot(from));
+        let first = turn(axis, from);
         let rest = self.antiderivative(first + turned) - self.antiderivative(first);
         turned / 2.0 + (1.0 - self.a / 2.0) * rest
     }

@@ -10,7 +10,7 @@
 use core::f64::consts::PI;
 
 use glam::DVec2;
-use libm::{atan2, cos, sin};
+use libm::{cos, sin};
 
 use super::shadow_volume::hull;
 use super::view::View;
@@ -18,7 +18,7 @@ use super::{Claim, Family, Parameter, Technique};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::mesh::{MeshVertex, Profile, ShadowMesh};
-use crate::outline::sides;
+use crate::outline::{sides, turn};
 use crate::scratch::Scratch;
 use crate::shadow::Shadow;
 
@@ -97,7 +97,7 @@ fn outer_ring(outline: &[DVec2], radius: f64) -> Vec<DVec2> {
     let mut ring = Vec::new();
     for (i, vertex) in outline.iter().enumerate() {
         let (before, after) = (normal(i + count - 1), normal(i));
-        let turn = atan2(before.perp_dot(after), before.dot(after));
+        let turn = turn(before, after);
         let steps = (turn * PER_HALF_TURN / PI).ceil().max(1.0) as u32;
         ring.extend((0..=steps).map(|step| {
             let angle = turn * f64::from(step) / f64::from(steps);

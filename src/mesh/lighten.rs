@@ -7,6 +7,8 @@ use core::f64::consts::PI;
 
 use glam::DVec2;
 
+use crate::outline;
+
 /// The least chords in a run: two would be two lines again.
 const FEWEST: usize = 3;
 
@@ -29,7 +31,7 @@ pub(super) fn lighten(points: &[DVec2], radius: f64, change: f64) -> Vec<DVec2> 
     let at = |i: usize| points[i % count];
     let turn = |i: usize| {
         let (before, after) = (at(i) - at(i + count - 1), at(i + 1) - at(i));
-        libm::atan2(before.perp_dot(after), before.dot(after))
+        outline::turn(before, after)
     };
     let limit = change * PI * radius * radius / LEFT_OVER;
     // Runs begin at corners.

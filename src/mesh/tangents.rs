@@ -8,9 +8,9 @@
 //! tangents inside: concave corners, holes that close and umbrae that split or vanish need no case of their own.
 
 use glam::DVec2;
-use libm::{atan2, cos, sin};
+use libm::{cos, sin};
 
-use crate::outline::{Outline, Winding, resolve_loops};
+use crate::outline::{self, Outline, Winding, resolve_loops};
 use crate::path::arc_steps;
 
 /// The light's disc as seen on the receiver through a vertex of the caster.
@@ -77,7 +77,7 @@ fn tangent_loop(circles: &[ProjectionCircle], t: f64, flatness: f64) -> Vec<DVec
     let turns: Vec<f64> = (0..count)
         .map(|i| {
             let before = normals[(i + count - 1) % count];
-            atan2(before.perp_dot(normals[i]), before.dot(normals[i]))
+            outline::turn(before, normals[i])
         })
         .collect();
     let bends_away = |i: usize| turns[i % count] * side <= 0.0;

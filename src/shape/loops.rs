@@ -6,11 +6,10 @@
 mod cubic;
 
 use glam::DVec2;
-use libm::atan2;
 
 use super::{Cover, Shape};
 use crate::error::{MAX_COORDINATE, Result};
-use crate::outline::{Arc, sides};
+use crate::outline::{Arc, sides, turn};
 use crate::path::{EllipseArc, FillRule, Path, Segment};
 
 /// How many times as many lines as an arc a cubic is to be in place of.
@@ -79,7 +78,7 @@ fn push_fitted(path: &mut Path, points: &[DVec2], within: f64) {
 fn sharpest(points: &[DVec2]) -> usize {
     let lines = sides(points).map(|(from, to)| to - from);
     let lines: Vec<DVec2> = lines.collect();
-    let turns = sides(&lines).map(|(a, b)| atan2(a.perp_dot(b), a.dot(b)).abs());
+    let turns = sides(&lines).map(|(a, b)| turn(a, b).abs());
     let sharpest = turns.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
     sharpest.map_or(0, |(line, _)| (line + 1) % points.len())
 }

@@ -3,7 +3,9 @@
 use core::f64::consts::TAU;
 
 use glam::DVec2;
-use libm::{atan2, tan};
+use libm::tan;
+
+use crate::outline;
 
 /// How far a vertex turns at most, in radians: beyond, it is a corner.
 const CORNER: f64 = 0.3;
@@ -53,7 +55,7 @@ impl Curve {
         let way = |i: usize| points[(i + 1) % count] - points[i % count];
         let corner = |i: usize| {
             let (before, after) = (way(i + count - 1), way(i));
-            atan2(before.perp_dot(after), before.dot(after))
+            outline::turn(before, after)
         };
         let corners: Vec<f64> = (0..count).map(corner).collect();
         let lengths: Vec<f64> = (0..count).map(|i| way(i).length()).collect();

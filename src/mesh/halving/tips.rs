@@ -6,7 +6,7 @@ use glam::DVec2;
 use libm::sin;
 
 use super::Lattice;
-use crate::outline::Edge;
+use crate::outline::{self, Edge};
 
 /// How near to the penumbra radius a radius of curvature is, over it, where there is a tip: samples tell of all others.
 const NEAR: f64 = 0.15;
@@ -78,7 +78,7 @@ pub(super) fn find(edges: &[Edge], radius: f64, tips: &mut Vec<Tip>) {
             && joint == from
         {
             let (before, after) = (joint - start, to - from);
-            let turn = libm::atan2(before.perp_dot(after), before.dot(after));
+            let turn = outline::turn(before, after);
             let found = (before.length() + after.length()) / (2.0 * turn.abs());
             if is_near(found) {
                 let across = (before.normalize() + after.normalize()).perp().normalize();

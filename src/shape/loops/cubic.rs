@@ -2,8 +2,9 @@
 //! Bézier curves").
 
 use glam::{DMat2, DVec2};
-use libm::{atan2, cos, sin};
+use libm::{cos, sin};
 
+use crate::outline::turn;
 use crate::path::Segment;
 
 /// Handles are neither shorter nor longer than these, over the chord: such curves have a cusp or a loop.
@@ -66,7 +67,7 @@ pub(super) fn fit(points: &[DVec2], within: f64) -> Option<Segment> {
 /// Where the circle through three points heads at the first of them.
 fn heading([at, next, last]: [DVec2; 3]) -> Option<DVec2> {
     let (first, second) = (next - at, last - next);
-    let turn = atan2(first.perp_dot(second), first.dot(second));
+    let turn = turn(first, second);
     let before = turn * first.length() / (first.length() + second.length());
     first
         .try_normalize()
