@@ -148,6 +148,13 @@ impl Part {
         self.from + along + self.leaving * (t * s * s) - self.arriving * (t * t * s)
     }
 
+    /// The derivative at a parameter from 0 to 1.
+    pub(crate) fn derivative(&self, t: f64) -> DVec2 {
+        let s = 1.0 - t;
+        let along = self.chord() * (6.0 * t * s);
+        along + self.leaving * (s * (s - 2.0 * t)) - self.arriving * (t * (s + s - t))
+    }
+
     /// Twice the area between it and its chord.
     pub(crate) fn double_area(&self) -> f64 {
         (self.leaving - self.arriving).perp_dot(self.chord()) / 6.0

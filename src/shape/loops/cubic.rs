@@ -5,7 +5,7 @@ use glam::{DMat2, DVec2};
 use libm::{cos, sin};
 
 use crate::outline::turn;
-use crate::path::Segment;
+use crate::path::{Part, Segment};
 
 /// Handles are neither shorter nor longer than these, over the chord: such curves have a cusp or a loop.
 const SHORTEST: f64 = 0.02;
@@ -29,9 +29,6 @@ const GAUSS: [[f64; 2]; 5] = [
     [0.953_089_922_969_332, 0.118_463_442_528_094_54],
 ];
 
-/// A cubic's control points.
-struct Cubic([DVec2; 4]);
-
 /// A cubic that lines, four points at least, are nowhere farther from than `within`, or none.
 pub(super) fn fit(points: &[DVec2], within: f64) -> Option<Segment> {
     let (&[from, second, third, ..], &[.., a, b, to]) = (points, points) else {
@@ -52,16 +49,14 @@ pub(super) fn fit(points: &[DVec2], within: f64) -> Option<Segment> {
     let leaving = (local * heading([from, second, third])?).normalize();
     let arriving = (local * -heading([to, b, a])?).normalize();
     let [first, last] = handles(leaving, arriving, under)?;
-    let cubic = Cubic([
+    let cubic = Part {
         from,
-        from + frame * (leaving * first),
-        to - frame * (arriving * last),
         to,
-    ]);
-    let [_, c1, c2, _] = cubic.0;
-    cubic
-        .is_near(points, within)
-        .then_some(Segment::Cubic(c1, c2, to))
+        leaving: frame * (leaving * first) * 3.0,
+        arriving: frame * (arriving * last) * 3.0,
+    };
+    let [leaving, _, arriving] = cubic.legs();
+    is_near(&cubic, points, within).then_some(Segment::Cubic(from + leaving, to - arriving, to))
 }
 
 /// Where the circle through three points heads at the first of them.
@@ -91,15 +86,15 @@ impl Integrals {
 
     /// Of a cubic from 0 to 1 with handles of these lengths.
     fn of(leaving: DVec2, arriving: DVec2, [first, last]: [f64; 2]) -> Self {
-        let cubic = Cubic([
-            DVec2::ZERO,
-            leaving * first,
-            DVec2::X - arriving * last,
-            DVec2::X,
-        ]);
+        let cubic = Part {
+            from: DVec2::ZERO,
+            to: DVec2::X,
+            leaving: leaving * first * 3.0,
+            arriving: arriving * last * 3.0,
+        };
         let mut under = Self::default();
         for [t, weight] in GAUSS {
-            let [at, derivative] = cubic.at(t);
+            let (at, derivative) = (cubic.at(t), cubic.derivative(t));
             under.area += weight * at.y * derivative.x;
             under.moment += weight * at.x * at.y * derivative.x;
         }
@@ -134,35 +129,22 @@ fn handles(leaving: DVec2, arriving: DVec2, under: Integrals) -> Option<[f64; 2]
     handles.iter().all(is_fit).then_some(handles)
 }
 
-impl Cubic {
-    /// A point and the derivative.
-    fn at(&self, t: f64) -> [DVec2; 2] {
-        let [a, b, c, d] = self.0;
-        let s = 1.0 - t;
-        let [ab, bc, cd] = [b - a, c - b, d - c];
-        [
-            a * (s * s * s) + b * (3.0 * s * s * t) + c * (3.0 * s * t * t) + d * (t * t * t),
-            (ab * (s * s) + bc * (2.0 * s * t) + cd * (t * t)) * 3.0,
-        ]
-    }
-
-    /// Whether lines, whose ends are its own, go its way and are nowhere farther from it.
-    fn is_near(&self, points: &[DVec2], within: f64) -> bool {
-        let mut before = 0.0;
-        let mut is_next = |point: DVec2| {
-            // Two steps along tangents come so near to where it is nearest that the distance is the same.
-            let mut t = before;
-            for _ in 0..2 {
-                let [at, derivative] = self.at(t);
-                t += (point - at).dot(derivative) / derivative.length_squared();
-            }
-            let is_behind = t > before && t <= 1.0 + SLACK;
-            before = t;
-            is_behind && self.at(t)[0].distance_squared(point) <= within * within
-        };
-        let mut lines = points.windows(2);
-        lines.all(|line| is_next(line[0].midpoint(line[1])) && is_next(line[1]))
-    }
+/// Whether lines, whose ends are a cubic's own, go its way and are nowhere farther from it.
+fn is_near(cubic: &Part, points: &[DVec2], within: f64) -> bool {
+    let mut before = 0.0;
+    let mut is_next = |point: DVec2| {
+        // Two steps along tangents come so near to where it is nearest that the distance is the same.
+        let mut t = before;
+        for _ in 0..2 {
+            let derivative = cubic.derivative(t);
+            t += (point - cubic.at(t)).dot(derivative) / derivative.length_squared();
+        }
+        let is_behind = t > before && t <= 1.0 + SLACK;
+        before = t;
+        is_behind && cubic.at(t).distance_squared(point) <= within * within
+    };
+    let mut lines = points.windows(2);
+    lines.all(|line| is_next(line[0].midpoint(line[1])) && is_next(line[1]))
 }
 
 /// How far behind its end, over its length, the last point may be found.
@@ -173,26 +155,36 @@ mod tests {
     use super::*;
 
     /// Lines along a cubic.
-    fn lines(cubic: &Cubic, count: u32) -> Vec<DVec2> {
-        let at = |index: u32| cubic.at(f64::from(index) / f64::from(count))[0];
+    fn lines(cubic: &Part, count: u32) -> Vec<DVec2> {
+        let at = |index: u32| cubic.at(f64::from(index) / f64::from(count));
         (0..=count).map(at).collect()
     }
 
     #[test]
     fn cubics_are_found_from_their_lines() {
-        let cubic = |points: [[f64; 2]; 4]| Cubic(points.map(DVec2::from_array));
+        let cubic = |points: [[f64; 2]; 4]| {
+            let [from, a, b, to] = points.map(DVec2::from_array);
+            let (leaving, arriving) = (3.0 * (a - from), 3.0 * (to - b));
+            let part = Part {
+                from,
+                to,
+                leaving,
+                arriving,
+            };
+            (part, [a, b])
+        };
         for points in [
             [[3.0, 4.0], [5.0, 9.0], [11.0, 10.0], [14.0, 6.0]],
             [[0.0, 0.0], [-7.0, 2.0], [-9.0, 6.0], [-8.0, 12.0]],
             [[100.0, 0.0], [103.0, 0.0], [109.0, -3.0], [110.0, -9.0]],
         ] {
-            let given = cubic(points);
+            let (given, handles) = cubic(points);
             let lines = lines(&given, 400);
             let Some(Segment::Cubic(a, b, to)) = fit(&lines, 1e-4) else {
                 panic!("{points:?}")
             };
-            assert!(to == given.0[3] && a.distance(given.0[1]) < 1e-2, "{a}");
-            assert!(b.distance(given.0[2]) < 1e-2, "{b}");
+            assert!(to == given.to && a.distance(handles[0]) < 1e-2, "{a}");
+            assert!(b.distance(handles[1]) < 1e-2, "{b}");
         }
     }
 
